@@ -1,0 +1,27 @@
+// The sub-commands: each adds itself to the command line and, when chosen, runs.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "halflight/base/result.h"
+
+namespace halflight::app {
+
+// Exit statuses of the contract.
+enum ExitStatus {
+  kGoalMet = 0,
+  kBadInput = 1,
+  kSystemFailure = 2,
+  kInterrupted = 3,
+  kBudgetEnded = 4,
+};
+
+// Prints the error's one line to stderr and returns its exit status.
+int fail(const Error& error);
+
+// Each registers a sub-command; its callback stores the exit status in `status`.
+void add_inspect(CLI::App& cli, int& status);
+
+}  // namespace halflight::app

@@ -1,0 +1,24 @@
+#include <cstdio>
+
+#include "commands.h"
+
+namespace halflight::app {
+
+int fail(const Error& error) {
+  std::fprintf(stderr, "halflight: %s\n", error.line().c_str());
+  return error.kind == Error::Kind::input ? kBadInput : kSystemFailure;
+}
+
+}  // namespace halflight::app
+
+int main(int argc, char** argv) {
+  CLI::App cli{"Lights diffuse 3-D scenes without noise.", "halflight"};
+  cli.require_subcommand(1);
+  int status = halflight::app::kGoalMet;
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return cli.exit(e) == 0 ? halflight::app::kGoalMet : halflight::app::kBadInput;
+  }
+  return status;
+}

@@ -1,0 +1,63 @@
+// Parallel loops. The only room file pair that names oneTBB is this header's source.
+// Determinism: a loop body writes only what belongs to its own index, so results are the same bytes
+// for any number of threads; reductions add up fixed-size blocks in order.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace halflight {
+
+// Limits all parallel loops to n threads; 0 means all cores. Call once, before any loop.
+void set_thread_count(int n);
+int thread_count();
+
+// Runs body(first, last) over disjoint sub-ranges of [0, n) of at least `grain` indices.
+void parallel_ranges(std::size_t n, std::size_t grain,
+                     const std::function<void(std::size_t first, std::size_t last)>& body);
+
+template <class Body>
+void parallel_for(std::size_t n, std::size_t grain, const Body& body) {
+  parallel_ranges(n, grain, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) body(i);
+  });
+}
+
+// Ordered concatenation: block b of `grain` indices appends to its own vector with
+// body(index, out); the vectors are joined in index order.
+template <class T, class Body>
+std::vector<T> parallel_collect(std::size_t n, std::size_t grain, const Body& body) {
+  const std::size_t blocks = (n + grain - 1) / grain;
+  std::vector<std::vector<T>> parts(blocks);
+  parallel_for(blocks, 1, [&](std::size_t b) {
+    const std::size_t last = std::min(n, (b + 1) * grain);
+    for (std::size_t i = b * grain; i < last; ++i) body(i, parts[b]);
+  });
+  std::size_t total = 0;
+  for (const auto& part : parts) total += part.size();
+  std::vector<T> joined;
+  joined.reserve(total);
+  for (auto& part : parts) {
+    joined.insert(joined.end(), part.begin(), part.end());
+    std::vector<T>().swap(part);
+  }
+  return joined;
+}
+
+// Sum of body(i) over [0, n): blocks of `grain` are added in order, whatever the thread count.
+template <class T, class Body>
+T parallel_sum(std::size_t n, std::size_t grain, T zero, const Body& body) {
+  const std::size_t blocks = (n + grain - 1) / grain;
+  std::vector<T> parts(blocks, zero);
+  parallel_for(blocks, 1, [&](std::size_t b) {
+    const std::size_t last = std::min(n, (b + 1) * grain);
+    for (std::size_t i = b * grain; i < last; ++i) parts[b] += body(i);
+  });
+  T total = zero;
+  for (const T& part : parts) total += part;
+  return total;
+}
+
+}  // namespace halflight

@@ -1,0 +1,176 @@
+#include "halflight/rays/ray_scene.h"
+
+#include <array>
+
+#include <string>
+
+#include <embree3/rtcore.h>
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+
+#include "halflight/rays/sampling.h"
+
+namespace halflight {
+namespace {
+
+// Answers differ in the last bit between instruction sets with and without fused multiply-add
+// (RenderKit/embree#51); AVX2 is on every processor since 2013 that this is meant for.
+constexpr const char* kInstructionSet = "avx2";
+constexpr float kOpaque = 1e-3f;  // a transmittance below this counts as blocked
+
+// What the filters need beyond Embree's own context.
+struct Context : RTCIntersectContext {
+  const Scene* scene;
+  const Geometry* geometry;
+  const TriangleId* triangles;  // of the transparent mesh, by primitive id
+  float transmittance = 1.f;
+  std::uint64_t seed = 0;
+};
+
+// Shadow rays: weaken and pass on until the ray is as good as blocked.
+void attenuate(const RTCFilterFunctionNArguments* args) {
+  auto* context = static_cast<Context*>(args->context);
+  if (args->valid[0] != -1) return;
+  const TriangleId t = context->triangles[RTCHitN_primID(args->hit, 1, 0)];
+  const Vec2 barycentric(RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0));
+  context->transmittance *=
+      1.f - opacity_at(*context->scene, *context->geometry, t, barycentric);
+  if (context->transmittance >= kOpaque) args->valid[0] = 0;
+}
+
+// Path rays: pass with probability 1 - opacity.
+void pass_by_chance(const RTCFilterFunctionNArguments* args) {
+  auto* context = static_cast<Context*>(args->context);
+  if (args->valid[0] != -1) return;
+  const TriangleId t = context->triangles[RTCHitN_primID(args->hit, 1, 0)];
+  const Vec2 barycentric(RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0));
+  const float opacity = opacity_at(*context->scene, *context->geometry, t, barycentric);
+  if (to_unit_float(hash(context->seed, t.value)) >= opacity) args->valid[0] = 0;
+}
+
+}  // namespace
+
+struct RayScene::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  const Scene* source = nullptr;
+  const Geometry* geometry = nullptr;
+  // Embree geometry 0 holds the opaque triangles, 1 those that may let light through.
+  std::array<std::vector<TriangleId>, 2> triangles;
+
+  ~Impl() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  void attach(unsigned which) {
+    RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const auto& ids = triangles[which];
+    rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               geometry->positions.raw().data(), 0, sizeof(Vec3),
+                               geometry->positions.size());
+    auto* indices = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                3 * sizeof(std::uint32_t), ids.size()));
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        indices[3 * i + k] = geometry->triangles[ids[i]][k].value;
+    if (which == 1) {
+      rtcSetGeometryOccludedFilterFunction(mesh, attenuate);
+      rtcSetGeometryIntersectFilterFunction(mesh, pass_by_chance);
+    }
+    rtcCommitGeometry(mesh);
+    rtcAttachGeometryByID(scene, mesh, which);
+    rtcReleaseGeometry(mesh);
+  }
+
+  Context context(std::uint64_t seed) const {
+    Context c;
+    rtcInitIntersectContext(&c);
+    c.scene = source;
+    c.geometry = geometry;
+    c.triangles = triangles[1].data();
+    c.seed = seed;
+    return c;
+  }
+};
+
+namespace {
+
+RTCRay make_ray(const Vec3& origin, const Vec3& direction, float far) {
+  RTCRay ray{};
+  ray.org_x = origin.x;
+  ray.org_y = origin.y;
+  ray.org_z = origin.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tnear = 0.f;
+  ray.tfar = far;
+  ray.mask = ~0u;
+  return ray;
+}
+
+}  // namespace
+
+RayScene::RayScene(const Scene& scene, const Geometry& geometry)
+    : impl_(std::make_unique<Impl>()) {
+  _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+  _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+  impl_->source = &scene;
+  impl_->geometry = &geometry;
+  for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
+    const TriangleId t(i);
+    impl_->triangles[may_be_transparent(scene.materials[geometry.materials[t]])].push_back(t);
+  }
+  impl_->device = rtcNewDevice((std::string("isa=") + kInstructionSet).c_str());
+  impl_->scene = rtcNewScene(impl_->device);
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+  for (unsigned which = 0; which < 2; ++which)
+    if (!impl_->triangles[which].empty()) impl_->attach(which);
+  rtcCommitScene(impl_->scene);
+
+  const Vec3 farthest = geometry.triangles.empty()
+                            ? Vec3(1.f)
+                            : glm::max(glm::abs(geometry.bounds.lower), glm::abs(geometry.bounds.upper));
+  lift_distance_ = max_component(farthest) * 0x1p-17f;
+}
+
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+float RayScene::transmittance(const Vec3& from, const Vec3& to) const {
+  Context context = impl_->context(0);
+  RTCRay ray = make_ray(from, to - from, 1.f);
+  rtcOccluded1(impl_->scene, &context, &ray);
+  return ray.tfar < 0.f ? 0.f : context.transmittance;
+}
+
+float RayScene::transmittance_to_sky(const Vec3& from, const Vec3& direction) const {
+  Context context = impl_->context(0);
+  RTCRay ray = make_ray(from, direction, kInfinity);
+  rtcOccluded1(impl_->scene, &context, &ray);
+  return ray.tfar < 0.f ? 0.f : context.transmittance;
+}
+
+std::optional<RayHit> RayScene::closest_hit(const Vec3& origin, const Vec3& direction,
+                                            float max_distance, std::uint64_t seed) const {
+  Context context = impl_->context(seed);
+  RTCRayHit query{};
+  query.ray = make_ray(origin, direction, max_distance);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(impl_->scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  RayHit hit;
+  hit.triangle = impl_->triangles[query.hit.geomID][query.hit.primID];
+  hit.barycentric = {query.hit.u, query.hit.v};
+  hit.distance = query.ray.tfar;
+  const Vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+  hit.front = glm::dot(normal, direction) < 0.f;
+  return hit;
+}
+
+const char* RayScene::instruction_set() { return kInstructionSet; }
+
+}  // namespace halflight

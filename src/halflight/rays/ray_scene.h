@@ -1,0 +1,51 @@
+// Exact visibility: the only files that name Embree are this header's source.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "halflight/base/vec.h"
+#include "halflight/scene/geometry.h"
+
+namespace halflight {
+
+struct RayHit {
+  TriangleId triangle;
+  Vec2 barycentric{0.f};  // weights of the triangle's 2nd and 3rd corner
+  float distance = 0.f;
+  bool front = true;      // the ray met the counter-clockwise side
+};
+
+// Ray queries against the flattened scene. Surfaces of opacity below 1 let light straight through
+// with weight 1 - opacity. Refers to scene and geometry: they must outlive it. Thread-safe.
+class RayScene {
+ public:
+  RayScene(const Scene& scene, const Geometry& geometry);
+  ~RayScene();
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+
+  // Product of 1 - opacity over everything strictly between the two points; 0 when blocked.
+  float transmittance(const Vec3& from, const Vec3& to) const;
+  // The same from a point to infinity (sky, directional lights).
+  float transmittance_to_sky(const Vec3& from, const Vec3& direction) const;
+  // Nearest surface that stops the ray. A surface of opacity a stops it with probability a, decided
+  // by a hash of the seed and the triangle, so that the answer is repeatable.
+  std::optional<RayHit> closest_hit(const Vec3& origin, const Vec3& direction, float max_distance,
+                                    std::uint64_t seed) const;
+
+  // Lifts a point off its surface, on the side that the unit normal n points to, by more than the
+  // rounding error of coordinates of this scene.
+  Vec3 lift(const Vec3& p, const Vec3& n) const { return p + n * lift_distance_; }
+  float lift_distance() const { return lift_distance_; }
+  // Names the instruction set that the answers depend on; part of the determinism promise.
+  static const char* instruction_set();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+  float lift_distance_ = 0.f;
+};
+
+}  // namespace halflight

@@ -1,0 +1,59 @@
+// Deterministic sampling: hashed seeds and low-discrepancy points, no global state.
+#pragma once
+
+#include <cstdint>
+
+#include "halflight/base/vec.h"
+
+namespace halflight {
+
+// Mixes integers to 64 well-spread bits (the finaliser of SplitMix64, Steele et al. 2014).
+constexpr std::uint64_t mix_bits(std::uint64_t v) {
+  v += 0x9e3779b97f4a7c15ull;
+  v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9ull;
+  v = (v ^ (v >> 27)) * 0x94d049bb133111ebull;
+  return v ^ (v >> 31);
+}
+template <class... Rest>
+constexpr std::uint64_t hash(std::uint64_t first, Rest... rest) {
+  std::uint64_t h = mix_bits(first);
+  ((h = mix_bits(h ^ static_cast<std::uint64_t>(rest))), ...);
+  return h;
+}
+
+// Uniform in [0, 1) from the upper bits of a hash.
+constexpr float to_unit_float(std::uint64_t h) {
+  return static_cast<float>(h >> 40) * 0x1p-24f;
+}
+
+// Point i of the additive R2 sequence (Roberts 2018: the plastic number), shifted by `shift`,
+// in [0, 1)^2. Any prefix is well spread.
+inline Vec2 r2_sequence(std::uint32_t i, Vec2 shift = Vec2(0.5f)) {
+  constexpr std::uint32_t kAlpha1 = 3242174889u;  // 2^32 / p
+  constexpr std::uint32_t kAlpha2 = 2447445414u;  // 2^32 / p^2
+  const float x = static_cast<float>((i * kAlpha1) >> 8) * 0x1p-24f + shift.x;
+  const float y = static_cast<float>((i * kAlpha2) >> 8) * 0x1p-24f + shift.y;
+  return {x - std::floor(x), y - std::floor(y)};
+}
+// A shift for r2_sequence from a seed.
+inline Vec2 random_shift(std::uint64_t seed) {
+  return {to_unit_float(hash(seed, 1)), to_unit_float(hash(seed, 2))};
+}
+
+// Barycentric weights (of corners 2 and 3) uniform over a triangle (Heitz 2019, low distortion).
+inline Vec2 uniform_triangle(Vec2 u) {
+  if (u.y > u.x) {
+    const float b = 0.5f * u.x;
+    return {b, u.y - b};
+  }
+  const float b = 0.5f * u.y;
+  return {u.x - b, b};
+}
+
+// Direction about +Z with density cos(theta) / pi.
+inline Vec3 cosine_hemisphere(Vec2 u) {
+  const float r = std::sqrt(u.x), phi = 2.f * kPi * u.y;
+  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.f, 1.f - u.x))};
+}
+
+}  // namespace halflight

@@ -1,0 +1,192 @@
+#include "halflight/scene/geometry.h"
+
+#include <glm/matrix.hpp>
+
+namespace halflight {
+namespace {
+
+void append_instance(const Scene& scene, const PrimitiveInstance& what, const Mat4& world,
+                     Geometry& g) {
+  const Primitive& p = scene.meshes[what.mesh].primitives[what.primitive];
+  const Mat4 normal_matrix = glm::transpose(glm::inverse(world));
+  const bool mirrored = glm::determinant(glm::dmat3(world)) < 0.0;
+
+  PrimitiveInstance placed = what;
+  const InstanceId instance(g.primitive_instances.size());
+  placed.vertices.first = static_cast<std::uint32_t>(g.positions.size());
+  placed.triangles.first = static_cast<std::uint32_t>(g.triangles.size());
+  for (std::size_t i = 0; i < p.positions.size(); ++i) {
+    g.positions.push_back(transform_point(world, p.positions[i]));
+    Vec3 n(0.f);
+    if (!p.normals.empty()) {
+      n = transform_vector(normal_matrix, p.normals[i]);
+      const float length = glm::length(n);
+      n = length > 0.f && std::isfinite(length) ? n / length : Vec3(0.f);
+    }
+    g.normals.push_back(n);
+    for (int set = 0; set < 2; ++set)
+      g.uvs[set].push_back(p.uvs[set].empty() ? Vec2(0.f) : p.uvs[set][i]);
+  }
+  for (std::array<std::uint32_t, 3> corner : p.triangles) {
+    if (mirrored) std::swap(corner[1], corner[2]);
+    std::array<VertexId, 3> v;
+    for (int k = 0; k < 3; ++k) v[k] = VertexId(placed.vertices.first + corner[k]);
+    const Vec3 a = g.positions[v[0]], b = g.positions[v[1]], c = g.positions[v[2]];
+    const float doubled_area = glm::length(glm::cross(b - a, c - a));
+    if (!is_finite(a) || !is_finite(b) || !is_finite(c) || !(doubled_area > 0.f)) {
+      ++g.degenerate_triangles;
+      continue;
+    }
+    g.triangles.push_back(v);
+    g.materials.push_back(p.material);
+    g.instances.push_back(instance);
+    for (const Vec3& corner_position : {a, b, c}) g.bounds.extend(corner_position);
+  }
+  placed.vertices.last = static_cast<std::uint32_t>(g.positions.size());
+  placed.triangles.last = static_cast<std::uint32_t>(g.triangles.size());
+  g.primitive_instances.push_back(placed);
+}
+
+PunctualLight place(const Light& light, const Mat4& world) {
+  PunctualLight placed;
+  placed.kind = light.kind;
+  placed.position = transform_point(world, Vec3(0.f));
+  placed.direction = glm::normalize(transform_vector(world, Vec3(0.f, 0.f, -1.f)));
+  placed.intensity = light.intensity;
+  placed.range = light.range;
+  placed.cos_inner = std::cos(light.inner_cone_angle);
+  placed.cos_outer = std::cos(light.outer_cone_angle);
+  return placed;
+}
+
+PlacedCamera place(const Camera& camera, const Mat4& world) {
+  PlacedCamera placed;
+  placed.name = camera.name;
+  placed.position = transform_point(world, Vec3(0.f));
+  placed.forward = glm::normalize(transform_vector(world, Vec3(0.f, 0.f, -1.f)));
+  placed.up = glm::normalize(transform_vector(world, Vec3(0.f, 1.f, 0.f)));
+  placed.perspective = camera.perspective;
+  placed.vertical_fov = camera.vertical_fov;
+  placed.aspect = camera.aspect;
+  placed.half_height =
+      camera.half_height * glm::length(transform_vector(world, Vec3(0.f, 1.f, 0.f)));
+  return placed;
+}
+
+Vec2 interpolate(const IdVector<VertexId, Vec2>& values, const std::array<VertexId, 3>& v,
+                 Vec2 b) {
+  return (1.f - b.x - b.y) * values[v[0]] + b.x * values[v[1]] + b.y * values[v[2]];
+}
+
+int wrapped(int i, int size, Wrap wrap) {
+  if (wrap == Wrap::clamp) return std::clamp(i, 0, size - 1);
+  const int period = wrap == Wrap::mirror ? 2 * size : size;
+  i = ((i % period) + period) % period;
+  return i < size ? i : period - 1 - i;
+}
+
+const std::array<float, 256>& srgb_to_linear() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> t{};
+    for (int i = 0; i < 256; ++i) {
+      const float c = static_cast<float>(i) / 255.f;
+      t[i] = c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+    }
+    return t;
+  }();
+  return table;
+}
+
+// Bilinear lookup; colour linear, alpha as stored.
+Vec4 sample(const Scene& scene, const TextureRef& ref, Vec2 uv) {
+  const Texture& t = scene.textures[ref.texture];
+  if (t.texels.empty()) return Vec4(1.f);
+  const auto& m = ref.uv_transform;
+  const Vec2 at(m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]);
+  // Far-off coordinates lose all precision anyway: bring them into int range.
+  const float limit = 1e6f;
+  const float x = std::clamp(at.x, -limit, limit) * static_cast<float>(t.width) - 0.5f;
+  const float y = std::clamp(at.y, -limit, limit) * static_cast<float>(t.height) - 0.5f;
+  if (!std::isfinite(x) || !std::isfinite(y)) return Vec4(1.f);
+  const float x0 = std::floor(x), y0 = std::floor(y);
+  const float fx = x - x0, fy = y - y0;
+  const auto& linear = srgb_to_linear();
+  const auto texel = [&](int dx, int dy) {
+    const double column = static_cast<double>(x0) + dx, row = static_cast<double>(y0) + dy;
+    const int i = wrapped(static_cast<int>(std::clamp(column, -2e9, 2e9)), t.width, t.wrap_u);
+    const int j = wrapped(static_cast<int>(std::clamp(row, -2e9, 2e9)), t.height, t.wrap_v);
+    const auto& p = t.texels[static_cast<std::size_t>(j) * t.width + i];
+    return Vec4(linear[p[0]], linear[p[1]], linear[p[2]], static_cast<float>(p[3]) / 255.f);
+  };
+  return (1.f - fy) * ((1.f - fx) * texel(0, 0) + fx * texel(1, 0)) +
+         fy * ((1.f - fx) * texel(0, 1) + fx * texel(1, 1));
+}
+
+Vec4 sample(const Scene& scene, const Geometry& g, const TextureRef& ref, TriangleId t,
+            Vec2 barycentric) {
+  if (!ref.valid()) return Vec4(1.f);
+  return sample(scene, ref, interpolate(g.uvs[ref.uv_set], g.triangles[t], barycentric));
+}
+
+}  // namespace
+
+Geometry flatten(const Scene& scene) {
+  Geometry g;
+  const IdVector<NodeId, Mat4> global = global_transforms(scene);
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    const NodeId id(i);
+    const Node& node = scene.nodes[id];
+    const Mat4 world = scene.to_world * global[id];
+    if (node.light.valid()) g.lights.push_back(place(scene.lights[node.light], world));
+    if (node.camera.valid()) {
+      g.cameras.push_back(place(scene.cameras[node.camera], world));
+      if (g.cameras.back().name.empty()) g.cameras.back().name = node.name;
+    }
+    if (!node.mesh.valid()) continue;
+    const std::size_t copies = std::max<std::size_t>(1, node.instances.size());
+    for (std::size_t copy = 0; copy < copies; ++copy) {
+      const Mat4 placed = node.instances.empty() ? world : world * node.instances[copy];
+      const std::size_t primitives = scene.meshes[node.mesh].primitives.size();
+      for (std::size_t p = 0; p < primitives; ++p) {
+        PrimitiveInstance what;
+        what.node = id;
+        what.copy = static_cast<std::uint32_t>(copy);
+        what.mesh = node.mesh;
+        what.primitive = static_cast<std::uint32_t>(p);
+        append_instance(scene, what, placed, g);
+      }
+    }
+  }
+  return g;
+}
+
+Rgb reflectance_at(const Scene& scene, const Geometry& g, TriangleId t, Vec2 barycentric) {
+  const Material& m = scene.materials[g.materials[t]];
+  const Rgb c = m.reflectance * Rgb(sample(scene, g, m.reflectance_texture, t, barycentric));
+  return glm::clamp(c, Rgb(0.f), Rgb(1.f));
+}
+
+Rgb emission_at(const Scene& scene, const Geometry& g, TriangleId t, Vec2 barycentric) {
+  const Material& m = scene.materials[g.materials[t]];
+  return m.emission * Rgb(sample(scene, g, m.emission_texture, t, barycentric));
+}
+
+float opacity_at(const Scene& scene, const Geometry& g, TriangleId t, Vec2 barycentric) {
+  const Material& m = scene.materials[g.materials[t]];
+  float alpha = m.alpha;
+  if (m.alpha_texture.valid())
+    alpha *= sample(scene, g, m.alpha_texture, t, barycentric).r;
+  else if (m.alpha_mode != AlphaMode::opaque)
+    alpha *= sample(scene, g, m.reflectance_texture, t, barycentric).a;
+  if (m.alpha_mode == AlphaMode::opaque) alpha = 1.f;
+  if (m.alpha_mode == AlphaMode::mask) alpha = alpha >= m.alpha_cutoff ? 1.f : 0.f;
+  return std::clamp(alpha * (1.f - m.transmission), 0.f, 1.f);
+}
+
+bool may_be_transparent(const Material& m) {
+  return m.transmission > 0.f ||
+         (m.alpha_mode != AlphaMode::opaque &&
+          (m.alpha < 1.f || m.alpha_texture.valid() || m.reflectance_texture.valid()));
+}
+
+}  // namespace halflight
