@@ -1,0 +1,152 @@
+#include "halflight/hierarchy/live_sides.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "halflight/base/parallel.h"
+#include "halflight/rays/sampling.h"
+
+namespace halflight {
+namespace {
+
+constexpr std::uint32_t kRaysPerBody = 256;
+constexpr std::uint32_t kRaysPerLargeSide = 64;
+constexpr float kLargeSurface = 1e-3f;  // share of the largest surface's area
+
+using ComponentId = Id<struct ComponentTag>;
+
+struct Components {
+  IdVector<TriangleId, ComponentId> of_triangle;
+  std::vector<std::uint8_t> closed;       // every edge joins two triangles, consistently wound
+  std::vector<std::uint8_t> transparent;  // some material lets light through
+  std::vector<std::uint8_t> emits_back;   // some double-sided emitter
+  std::vector<std::vector<TriangleId>> members;
+};
+
+Components find_components(const Scene& scene, const Geometry& g) {
+  const auto welded = weld_positions(g);
+  std::vector<std::uint32_t> parent(g.positions.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto find = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  std::vector<std::tuple<std::uint32_t, std::uint32_t, bool, std::uint32_t>> edges;
+  edges.reserve(3 * g.triangles.size());
+  for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
+    const auto& v = g.triangles[TriangleId(t)];
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = welded[v[k]].value, b = welded[v[(k + 1) % 3]].value;
+      parent[std::max(find(a), find(b))] = std::min(find(a), find(b));
+      edges.emplace_back(std::min(a, b), std::max(a, b), a < b, t);
+    }
+  }
+
+  Components c;
+  c.of_triangle.resize(g.triangles.size());
+  std::vector<std::uint32_t> number(g.positions.size(), ComponentId::kInvalid);
+  for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
+    const std::uint32_t root = find(welded[g.triangles[TriangleId(t)][0]].value);
+    if (number[root] == ComponentId::kInvalid) {
+      number[root] = static_cast<std::uint32_t>(c.members.size());
+      c.members.emplace_back();
+    }
+    c.of_triangle[TriangleId(t)] = ComponentId(number[root]);
+    c.members[number[root]].push_back(TriangleId(t));
+  }
+  c.closed.assign(c.members.size(), 1);
+  c.transparent.assign(c.members.size(), 0);
+  c.emits_back.assign(c.members.size(), 0);
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size();) {
+    const auto [low, high, first_forward, t] = edges[i];
+    std::size_t forward = 0, backward = 0;
+    for (; i < edges.size() && std::get<0>(edges[i]) == low && std::get<1>(edges[i]) == high; ++i)
+      ++(std::get<2>(edges[i]) ? forward : backward);
+    if (forward != 1 || backward != 1) c.closed[c.of_triangle[TriangleId(t)].value] = 0;
+  }
+  for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
+    const Material& m = scene.materials[g.materials[TriangleId(t)]];
+    const std::uint32_t id = c.of_triangle[TriangleId(t)].value;
+    if (may_be_transparent(m)) c.transparent[id] = 1;
+    if (m.emits() && m.double_sided) c.emits_back[id] = 1;
+  }
+  return c;
+}
+
+Vec3 direction_about(const Vec3& n, std::uint32_t i, std::uint64_t seed) {
+  return Frame::from_normal(n).to_world(cosine_hemisphere(r2_sequence(i, random_shift(seed))));
+}
+
+// Every ray that leaves this side of the closed body meets the same side of the same body again.
+bool sees_only_itself(const Geometry& g, const RayScene& rays, const Components& components,
+                      ComponentId id, bool back) {
+  const auto& members = components.members[id.value];
+  for (std::uint32_t i = 0; i < kRaysPerBody; ++i) {
+    const std::uint64_t seed = hash(id.value, i, back);
+    const TriangleId t = members[seed % members.size()];
+    const auto [a, b, c] = g.corners(t);
+    const Vec3 n = glm::normalize(g.scaled_normal(t)) * (back ? -1.f : 1.f);
+    const Vec3 p = rays.lift((a + b + c) / 3.f, n);
+    const auto hit = rays.closest_hit(p, direction_about(n, i, id.value), kInfinity, seed);
+    if (!hit || components.of_triangle[hit->triangle] != id || hit->front == back) return false;
+  }
+  return true;
+}
+
+bool sees_nothing(const Geometry& g, const Surfaces& surfaces, const RayScene& rays, SideId side) {
+  const Surface& s = surfaces[side];
+  const Vec3 n = surfaces.normal(side);
+  for (std::uint32_t i = 0; i < kRaysPerLargeSide; ++i) {
+    const std::uint64_t seed = hash(side.value, i);
+    const auto corner = g.corners(surfaces.triangles[s.first_triangle + seed % s.triangle_count]);
+    const Vec2 b = uniform_triangle(random_shift(seed));
+    const Vec3 p = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
+    if (rays.closest_hit(rays.lift(p, n), direction_about(n, i, side.value), kInfinity, seed))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+IdVector<SideId, std::uint8_t> find_live_sides(const Scene& scene, const Geometry& g,
+                                               const Surfaces& surfaces, const RayScene& rays) {
+  const Components components = find_components(scene, g);
+  const std::size_t bodies = components.members.size();
+  std::vector<std::uint8_t> dead(2 * bodies, 0);
+  parallel_for(2 * bodies, 8, [&](std::size_t i) {
+    const ComponentId id(i / 2);
+    const bool back = i % 2 != 0;
+    if (!components.closed[id.value] || components.transparent[id.value]) return;
+    const bool lit_by_itself =
+        std::any_of(components.members[id.value].begin(), components.members[id.value].end(),
+                    [&](TriangleId t) { return scene.materials[g.materials[t]].emits(); }) &&
+        (!back || components.emits_back[id.value]);
+    if (lit_by_itself) return;
+    for (const PunctualLight& light : g.lights)
+      if (light.kind != Light::Kind::directional) return;
+    dead[i] = sees_only_itself(g, rays, components, id, back);
+  });
+
+  const bool lit_from_outside = max_component(scene.sky) > 0.f || !g.lights.empty();
+  float largest = 0.f;
+  for (const Surface& s : surfaces.surfaces) largest = std::max(largest, s.area);
+  IdVector<SideId, std::uint8_t> live(2 * surfaces.surfaces.size(), 1);
+  parallel_for(live.size(), 64, [&](std::size_t i) {
+    const SideId side(i);
+    const Surface& s = surfaces[side];
+    const TriangleId t = surfaces.triangles[s.first_triangle];
+    const ComponentId body = components.of_triangle[t];
+    const Material& m = scene.materials[s.material];
+    if (m.emits() && (!is_back(side) || m.double_sided)) return;
+    if (dead[2 * body.value + (is_back(side) ? 1 : 0)])
+      live[side] = 0;
+    else if (!lit_from_outside && s.area > kLargeSurface * largest)
+      live[side] = !sees_nothing(g, surfaces, rays, side);
+  });
+  return live;
+}
+
+}  // namespace halflight

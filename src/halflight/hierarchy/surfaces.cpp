@@ -1,0 +1,159 @@
+#include "halflight/hierarchy/surfaces.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace halflight {
+namespace {
+
+// Triangles within this angle of the first one's plane belong to it (radians), and their corners
+// within this share of its size.
+constexpr float kSameNormal = 2e-3f;
+constexpr float kSamePlane = 1e-4f;
+
+struct HalfEdge {
+  std::uint32_t low, high;  // welded vertices
+  std::uint32_t triangle;
+  bool forward;             // runs low -> high
+  bool operator<(const HalfEdge& o) const {
+    return std::tie(low, high, triangle) < std::tie(o.low, o.high, o.triangle);
+  }
+};
+
+std::vector<HalfEdge> sorted_half_edges(const Geometry& g,
+                                        const IdVector<VertexId, VertexId>& welded) {
+  std::vector<HalfEdge> edges;
+  edges.reserve(3 * g.triangles.size());
+  for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
+    const auto& v = g.triangles[TriangleId(t)];
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = welded[v[k]].value, b = welded[v[(k + 1) % 3]].value;
+      edges.push_back({std::min(a, b), std::max(a, b), t, a < b});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+// Neighbours across edges that exactly two triangles share in opposite directions; else invalid.
+std::vector<std::array<TriangleId, 3>> manifold_neighbours(
+    const Geometry& g, const IdVector<VertexId, VertexId>& welded) {
+  const std::vector<HalfEdge> edges = sorted_half_edges(g, welded);
+  std::vector<std::array<TriangleId, 3>> neighbours(g.triangles.size());
+  std::vector<std::uint8_t> used(g.triangles.size(), 0);
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t j = i;
+    while (j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high) ++j;
+    if (j - i == 2 && edges[i].forward != edges[i + 1].forward) {
+      const std::uint32_t a = edges[i].triangle, b = edges[i + 1].triangle;
+      neighbours[a][used[a]++] = TriangleId(b);
+      neighbours[b][used[b]++] = TriangleId(a);
+    }
+    i = j;
+  }
+  return neighbours;
+}
+
+// Frame with axis_u along the longest edge of the first triangle, so that rectangles stay upright.
+Surface plane_of(const Geometry& g, TriangleId t) {
+  const auto corner = g.corners(t);
+  Vec3 longest(0.f);
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 e = corner[(k + 1) % 3] - corner[k];
+    if (glm::dot(e, e) > glm::dot(longest, longest)) longest = e;
+  }
+  // The longest edge of a rectangle's half is its diagonal: prefer the longer leg of a right angle.
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 a = corner[(k + 1) % 3] - corner[k], b = corner[(k + 2) % 3] - corner[k];
+    if (std::abs(glm::dot(a, b)) < 1e-3f * glm::length(a) * glm::length(b))
+      longest = glm::dot(a, a) > glm::dot(b, b) ? a : b;
+  }
+  Surface s;
+  s.origin = corner[0];
+  s.normal = glm::normalize(g.scaled_normal(t));
+  s.axis_u = glm::normalize(longest);
+  s.axis_v = glm::normalize(glm::cross(s.normal, s.axis_u));
+  s.material = g.materials[t];
+  return s;
+}
+
+bool lies_in(const Geometry& g, TriangleId t, const Surface& plane, float tolerance) {
+  if (g.materials[t] != plane.material) return false;
+  const Vec3 n = g.scaled_normal(t);
+  if (glm::length(glm::cross(n, plane.normal)) > kSameNormal * glm::length(n)) return false;
+  if (glm::dot(n, plane.normal) < 0.f) return false;
+  for (const Vec3& p : g.corners(t))
+    if (std::abs(glm::dot(p - plane.origin, plane.normal)) > tolerance) return false;
+  return true;
+}
+
+}  // namespace
+
+IdVector<VertexId, VertexId> weld_positions(const Geometry& g) {
+  std::vector<std::uint32_t> order(g.positions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto less = [&](std::uint32_t a, std::uint32_t b) {
+    const Vec3 &p = g.positions[VertexId(a)], &q = g.positions[VertexId(b)];
+    return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+  };
+  std::sort(order.begin(), order.end(), less);
+  IdVector<VertexId, VertexId> welded(g.positions.size());
+  for (std::size_t i = 0; i < order.size();) {
+    std::size_t j = i;
+    while (j < order.size() && g.positions[VertexId(order[j])] == g.positions[VertexId(order[i])])
+      welded[VertexId(order[j++])] = VertexId(order[i]);
+    i = std::max(j, i + 1);
+  }
+  return welded;
+}
+
+Surfaces build_surfaces(const Geometry& g) {
+  const std::size_t n = g.triangles.size();
+  const auto neighbours = manifold_neighbours(g, weld_positions(g));
+
+  std::vector<float> area(n);
+  for (std::size_t i = 0; i < n; ++i) area[i] = 0.5f * glm::length(g.scaled_normal(TriangleId(i)));
+  std::vector<std::uint32_t> largest_first(n);
+  std::iota(largest_first.begin(), largest_first.end(), 0u);
+  std::stable_sort(largest_first.begin(), largest_first.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
+
+  Surfaces result;
+  result.of_triangle.resize(n);
+  result.triangles.reserve(n);
+  result.cumulative_area.reserve(n);
+  for (const std::uint32_t seed : largest_first) {
+    if (result.of_triangle[TriangleId(seed)].valid()) continue;
+    const SurfaceId id(result.surfaces.size());
+    Surface s = plane_of(g, TriangleId(seed));
+    s.first_triangle = static_cast<std::uint32_t>(result.triangles.size());
+    s.uv_lower = Vec2(kInfinity);
+    s.uv_upper = Vec2(-kInfinity);
+    const float tolerance = kSamePlane * std::sqrt(area[seed]);
+
+    result.triangles.push_back(TriangleId(seed));
+    result.of_triangle[TriangleId(seed)] = id;
+    for (std::size_t next = s.first_triangle; next < result.triangles.size(); ++next) {
+      const TriangleId t = result.triangles[next];
+      s.area += area[t.value];
+      result.cumulative_area.push_back(s.area);
+      for (const Vec3& p : g.corners(t)) {
+        s.box.extend(p);
+        s.uv_lower = glm::min(s.uv_lower, s.to_plane(p));
+        s.uv_upper = glm::max(s.uv_upper, s.to_plane(p));
+      }
+      for (const TriangleId other : neighbours[t.value]) {
+        if (!other.valid() || result.of_triangle[other].valid()) continue;
+        if (!lies_in(g, other, s, tolerance)) continue;
+        result.of_triangle[other] = id;
+        result.triangles.push_back(other);
+      }
+    }
+    s.triangle_count = static_cast<std::uint32_t>(result.triangles.size()) - s.first_triangle;
+    result.surfaces.push_back(s);
+  }
+  return result;
+}
+
+}  // namespace halflight

@@ -1,0 +1,40 @@
+// Reads a solution: direct light evaluated afresh through a cut over the emitters with exact rays,
+// indirect light by a final gather whose rays end in the solved radiosity. Vertices, sensors and
+// pixels all come here.
+#pragma once
+
+#include <memory>
+
+#include "halflight/output/light_reader.h"
+#include "halflight/solve/solver.h"
+#include "halflight/transport/emitter_tree.h"
+
+namespace halflight {
+
+struct ReadOptions {
+  int gather_rays = 256;  // of each point's hemisphere
+  DirectLightOptions direct;
+};
+
+class SolutionReader {
+ public:
+  // Refers to the state, which must outlive the reader.
+  SolutionReader(const SolverState& state, const ReadOptions& options);
+
+  Reading read(const ReadingPoint& point) const;
+  std::vector<Reading> operator()(std::span<const ReadingPoint> points) const;  // in parallel
+
+  Rgb direct(const Vec3& x, const Vec3& n) const;  // emitting surfaces and punctual lights
+  // Solved radiosity less emission of what a ray has hit.
+  Rgb reflected_radiosity(const RayHit& hit) const;
+
+ private:
+  // Light reflected at least once, and the sky's share.
+  void gather(const Vec3& x, const Vec3& n, Rgb& reflected, Rgb& sky) const;
+
+  const SolverState* state_;
+  ReadOptions options_;
+  EmitterTree emitters_;
+};
+
+}  // namespace halflight

@@ -1,0 +1,27 @@
+// A scene made ready for queries: what every renderer of it shares. Immutable and at a fixed
+// address, since its parts refer to each other.
+#pragma once
+
+#include <memory>
+
+#include "halflight/rays/ray_scene.h"
+#include "halflight/scene/geometry.h"
+#include "halflight/scene/scene.h"
+
+namespace halflight {
+
+struct World {
+  explicit World(Scene s) : scene(std::move(s)), geometry(flatten(scene)), rays(scene, geometry) {}
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  const Scene scene;
+  const Geometry geometry;
+  const RayScene rays;
+};
+
+inline std::shared_ptr<const World> make_world(Scene scene) {
+  return std::make_shared<const World>(std::move(scene));
+}
+
+}  // namespace halflight

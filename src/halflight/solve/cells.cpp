@@ -1,0 +1,122 @@
+#include "halflight/solve/cells.h"
+
+#include "halflight/base/parallel.h"
+#include "halflight/rays/sampling.h"
+#include "halflight/transport/outer_light.h"
+
+namespace halflight {
+namespace {
+
+constexpr std::uint32_t kTextureSamples = 8;
+constexpr std::uint32_t kOuterSamples = 4;  // points of a cell
+constexpr int kSkyRays = 16;                // of each point
+
+Vec2 barycentric_of(const Geometry& g, const SurfacePoint& p) {
+  const auto [a, b, c] = g.corners(p.triangle);
+  const Vec3 n = glm::cross(b - a, c - a);
+  const float area = glm::dot(n, n);
+  return {glm::dot(glm::cross(p.position - a, c - a), n) / area,
+          glm::dot(glm::cross(b - a, p.position - a), n) / area};
+}
+
+struct OuterLight {
+  Rgb mean{0.f};
+  float deviation = 0.f;
+};
+
+OuterLight sample_outer_light(const SolverState& state, ElementId cell) {
+  const Vec3 n = state.tree.normal(cell);
+  OuterLight result;
+  float sum = 0.f, squares = 0.f;
+  const Vec2 shift = random_shift(hash(cell.value, 11));
+  for (std::uint32_t k = 0; k < kOuterSamples; ++k) {
+    const Vec3 x = state.tree.sample(cell, r2_sequence(k, shift)).position;
+    const Rgb e = punctual_irradiance(*state.world, x, n) +
+                  sky_irradiance(*state.world, x, n, kSkyRays, random_shift(hash(cell.value, k)));
+    result.mean += e / static_cast<float>(kOuterSamples);
+    sum += average(e);
+    squares += average(e) * average(e);
+  }
+  const float count = kOuterSamples;
+  result.deviation = std::sqrt(std::max(0.f, (squares - sum * sum / count) / (count - 1.f)));
+  return result;
+}
+
+}  // namespace
+
+void evaluate_material(SolverState& state, ElementId cell) {
+  const ElementTree& tree = state.tree;
+  const Scene& scene = state.world->scene;
+  const Geometry& g = state.world->geometry;
+  const SideId side = tree[cell].side;
+  const Material& m = scene.materials[tree.surfaces()[side].material];
+  const bool textured = m.reflectance_texture.valid() || m.alpha_texture.valid() ||
+                        (m.emits() && m.emission_texture.valid());
+  const std::uint32_t samples = textured ? kTextureSamples : 1;
+  Rgb reflectance(0.f), emission(0.f);
+  for (std::uint32_t k = 0; k < samples; ++k) {
+    const SurfacePoint p = tree.sample(cell, r2_sequence(k));
+    const Vec2 b = barycentric_of(g, p);
+    const float opacity = opacity_at(scene, g, p.triangle, b);
+    reflectance += opacity * reflectance_at(scene, g, p.triangle, b);
+    emission += emission_at(scene, g, p.triangle, b);
+  }
+  const float weight = 1.f / static_cast<float>(samples);
+  state.reflectance[cell] = weight * reflectance;
+  state.exitance[cell] = is_back(side) && !m.double_sided ? Rgb(0.f) : kPi * weight * emission;
+}
+
+void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
+  const std::size_t n = state.tree.size();
+  state.reflectance.resize(n);
+  state.exitance.resize(n);
+  state.outer_light.resize(n);
+  state.outer_light_known.resize(n, 0);
+  state.irradiance.resize(n);
+  state.radiosity.resize(n);
+  parallel_for(split_cells.size(), 64, [&](std::size_t i) {
+    const ElementId parent = split_cells[i];
+    for (const ElementId child : state.tree[parent].children()) {
+      evaluate_material(state, child);
+      state.outer_light[child] = state.outer_light[parent];
+      state.irradiance[child] = state.irradiance[parent];
+      state.radiosity[child] =
+          state.exitance[child] + state.reflectance[child] * state.irradiance[child];
+    }
+  });
+}
+
+void update_outer_light(SolverState& state, float irradiance_threshold, std::uint64_t& rays) {
+  if (!has_outer_light(*state.world)) return;
+  std::vector<ElementId> open;
+  for (std::size_t i = 0; i < state.tree.size(); ++i) {
+    const ElementId e(i);
+    if (!state.tree[e].is_cluster() && state.tree[e].is_leaf() && !state.outer_light_known[e])
+      open.push_back(e);
+  }
+  const float scene_area = state.tree[state.tree.root()].area;
+  while (!open.empty()) {
+    std::vector<std::uint8_t> uneven(open.size());
+    parallel_for(open.size(), 16, [&](std::size_t i) {
+      const ElementId e = open[i];
+      const OuterLight light = sample_outer_light(state, e);
+      state.outer_light[e] = light.mean;
+      state.outer_light_known[e] = 1;
+      const float error = light.deviation * std::sqrt(state.tree[e].area / scene_area);
+      uneven[i] = error > irradiance_threshold &&
+                  state.tree.cell_size(e) > state.options.feature_size;
+    });
+    rays += open.size() * kOuterSamples;
+    std::vector<ElementId> split;
+    for (std::size_t i = 0; i < open.size(); ++i)
+      if (uneven[i]) split.push_back(open[i]);
+    open.clear();
+    for (const ElementId e : split) {
+      state.tree.split(e);
+      for (const ElementId child : state.tree[e].children()) open.push_back(child);
+    }
+    inherit(state, split);
+  }
+}
+
+}  // namespace halflight

@@ -1,0 +1,146 @@
+#include "halflight/solve/solver.h"
+
+#include <chrono>
+
+#include "halflight/base/parallel.h"
+#include "halflight/hierarchy/live_sides.h"
+#include "halflight/hierarchy/size_grid.h"
+#include "halflight/solve/cells.h"
+#include "halflight/solve/sweep.h"
+#include "halflight/transport/outer_light.h"
+
+namespace halflight {
+namespace {
+
+// irradiance_threshold = this * error * mean irradiance. Calibrated against the reference, see
+// docs/design/refinement.md.
+constexpr float kThresholdPerError = 0.02f;
+constexpr float kThresholdRatio = 4.f;  // between passes
+constexpr float kBlindCells = 8.f;      // RefineOptions::largest_blind_cell in feature sizes
+constexpr float kSweepTolerance = 1e-5f;
+constexpr int kMostSweeps = 200;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Before any light has arrived: the emitted power spread over all that it could fall on.
+float first_guess_of_irradiance(const SolverState& state) {
+  double power = 0.0;
+  for (std::size_t i = 0; i < state.tree.size(); ++i) {
+    const ElementId e(i);
+    if (!state.tree[e].is_cluster() && state.tree[e].is_leaf())
+      power += static_cast<double>(
+          state.tree[e].area * average(state.exitance[e] + state.outer_light[e]));
+  }
+  return static_cast<float>(power) / std::max(state.tree[state.tree.root()].area, 1e-30f);
+}
+
+// Moves out of the table what the present radiosities no longer justify.
+std::vector<ElementPair> take_failing_links(SolverState& state, float threshold,
+                                            std::vector<ReceiverLink>& kept) {
+  std::vector<ElementPair> failing;
+  for (const ReceiverLink& l : state.links.release()) {
+    const bool awakened = !l.link.sampled() && average(state.radiosity[l.link.source]) > 0.f;
+    if (awakened || weighted_error(state.tree, l.receiver, l.link, state.radiosity) > threshold)
+      failing.push_back({l.receiver, l.link.source});
+    else
+      kept.push_back(l);
+  }
+  return failing;
+}
+
+}  // namespace
+
+SolverState make_state(std::shared_ptr<const World> world, const SolveOptions& options) {
+  auto surfaces = std::make_shared<const Surfaces>(build_surfaces(world->geometry));
+  std::vector<Bounds3f> boxes(surfaces->surfaces.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = (*surfaces)[SurfaceId(i)].box;
+  const auto live = find_live_sides(world->scene, world->geometry, *surfaces, world->rays);
+  SolverState state{world,
+                    surfaces,
+                    ElementTree(world->geometry, *surfaces, build_size_grid(boxes), live),
+                    options,
+                    {}, {}, {}, {}, {}, {}, {}, {}};
+  if (!(state.options.feature_size > 0.f))
+    state.options.feature_size = world->geometry.bounds.diagonal() / 200.f;
+
+  const std::size_t n = state.tree.size();
+  state.reflectance.resize(n);
+  state.exitance.resize(n);
+  state.outer_light.resize(n, Rgb(0.f));
+  state.outer_light_known.resize(n, 0);
+  state.irradiance.resize(n, Rgb(0.f));
+  state.radiosity.resize(n, Rgb(0.f));
+  parallel_for(n, 256, [&](std::size_t i) {
+    if (!state.tree[ElementId(i)].is_cluster()) evaluate_material(state, ElementId(i));
+  });
+  pull(state);
+  return state;
+}
+
+void advance(SolverState& state, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const int pass = static_cast<int>(state.history.size());
+  PassRecord record;
+  const float mean = pass == 0 ? first_guess_of_irradiance(state) : mean_irradiance(state);
+  record.irradiance_threshold =
+      kThresholdPerError * state.options.error * mean *
+      std::pow(kThresholdRatio, static_cast<float>(std::max(0, state.options.passes - 1 - pass)));
+
+  update_outer_light(state, record.irradiance_threshold, record.rays);
+  if (pass == 0) pull(state);
+
+  std::vector<ReceiverLink> links;
+  std::vector<ElementPair> pairs;
+  if (pass == 0)
+    pairs.push_back({state.tree.root(), state.tree.root()});
+  else
+    pairs = take_failing_links(state, record.irradiance_threshold, links);
+  RefineOptions refine_options;
+  refine_options.irradiance_threshold = record.irradiance_threshold;
+  refine_options.smallest_cell = 0.5f * state.options.feature_size;
+  refine_options.largest_blind_cell = kBlindCells * state.options.feature_size;
+  refine_options.most_links = state.options.most_links;
+  RefineCounts counts;
+  refine(state.tree, state.world->rays, state.radiosity, std::move(pairs), refine_options,
+         [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress, links, counts);
+  update_outer_light(state, record.irradiance_threshold, record.rays);
+  state.links = LinkTable(state.tree.size(), std::move(links));
+  record.refine_seconds = seconds_since(start);
+
+  record.sweeps = sweep_to_convergence(state, kSweepTolerance, kMostSweeps);
+  record.sweep_seconds = seconds_since(start) - record.refine_seconds;
+  record.links = state.links.size();
+  record.elements = state.tree.size();
+  record.pairs = counts.pairs;
+  record.rays += counts.rays;
+  state.history.push_back(record);
+}
+
+EnergyBalance energy_balance(const SolverState& state) {
+  EnergyBalance balance;
+  for (std::size_t i = 0; i < state.tree.size(); ++i) {
+    const ElementId e(i);
+    if (state.tree[e].is_cluster() || !state.tree[e].is_leaf()) continue;
+    const float area = state.tree[e].area;
+    balance.emitted += area * (state.exitance[e] + state.outer_light[e]);
+    balance.absorbed += area * (Rgb(1.f) - state.reflectance[e]) * state.irradiance[e];
+  }
+  balance.escaped = balance.emitted - balance.absorbed;
+  return balance;
+}
+
+float mean_irradiance(const SolverState& state) {
+  double power = 0.0, area = 0.0;
+  for (std::size_t i = 0; i < state.tree.size(); ++i) {
+    const ElementId e(i);
+    const float irradiance = average(state.irradiance[e]);
+    if (state.tree[e].is_cluster() || !state.tree[e].is_leaf() || !(irradiance > 0.f)) continue;
+    power += static_cast<double>(state.tree[e].area * irradiance);
+    area += static_cast<double>(state.tree[e].area);
+  }
+  return area > 0.0 ? static_cast<float>(power / area) : 0.f;
+}
+
+}  // namespace halflight

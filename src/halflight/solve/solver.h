@@ -1,0 +1,69 @@
+// The radiosity solver as a value: make_state, then advance pass by pass; every state in between is
+// a valid result. Hierarchical radiosity with clustering (paper sections 1 and 6; Sillion 1995).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "halflight/base/progress.h"
+#include "halflight/hierarchy/elements.h"
+#include "halflight/rays/world.h"
+#include "halflight/transport/link.h"
+#include "halflight/transport/refine.h"
+
+namespace halflight {
+
+struct SolveOptions {
+  float feature_size = 0.f;  // s, metres: smallest shadow kept exact; 0: scene diagonal / 200
+  float error = 0.05f;       // aimed-at relative RMS error of irradiance
+  int passes = 3;            // settings of the threshold, coarse to fine
+  std::size_t most_links = 40'000'000;
+};
+
+// What one pass did (the report's history).
+struct PassRecord {
+  float irradiance_threshold = 0.f;
+  std::size_t links = 0;
+  std::size_t elements = 0;
+  std::uint64_t pairs = 0;
+  std::uint64_t rays = 0;
+  int sweeps = 0;
+  double refine_seconds = 0.0;
+  double sweep_seconds = 0.0;
+};
+
+struct SolverState {
+  std::shared_ptr<const World> world;
+  std::shared_ptr<const Surfaces> surfaces;
+  ElementTree tree;
+  SolveOptions options;  // resolved: no zeros that stand for defaults
+
+  IdVector<ElementId, Rgb> reflectance;   // of cells
+  IdVector<ElementId, Rgb> exitance;      // pi L of cells
+  IdVector<ElementId, Rgb> outer_light;   // irradiance of leaf cells by punctual lights and sky
+  IdVector<ElementId, std::uint8_t> outer_light_known;
+  IdVector<ElementId, Rgb> irradiance;    // E of cells, from all links above and at them
+  IdVector<ElementId, Rgb> radiosity;     // B = rho E + pi L, mean over the element's area
+  LinkTable links;
+  std::vector<PassRecord> history;
+
+  bool done() const { return static_cast<int>(history.size()) >= options.passes; }
+};
+
+SolverState make_state(std::shared_ptr<const World> world, const SolveOptions& options);
+
+// Runs one pass: refine the links at the present radiosities, then sweep to convergence.
+void advance(SolverState& state, const Progress& progress);
+
+// Power in W (or lumens) over all cells.
+struct EnergyBalance {
+  Rgb emitted{0.f};   // by surfaces, plus what punctual lights and the sky bring in
+  Rgb absorbed{0.f};
+  Rgb escaped{0.f};   // emitted - absorbed: left through openings, or lost by error
+};
+EnergyBalance energy_balance(const SolverState& state);
+
+// Area-weighted mean irradiance over all cells that receive light.
+float mean_irradiance(const SolverState& state);
+
+}  // namespace halflight

@@ -1,0 +1,114 @@
+#include "halflight/solve/sweep.h"
+
+#include "halflight/base/parallel.h"
+#include "halflight/transport/spherical_harmonics.h"
+
+namespace halflight {
+namespace {
+
+constexpr std::size_t kGrain = 1024;
+
+// Clusters numbered by themselves, so that only they carry directional irradiance.
+struct ClusterNumbers {
+  std::vector<std::uint32_t> of_element;
+  std::size_t count = 0;
+
+  explicit ClusterNumbers(const ElementTree& tree) : of_element(tree.cluster_count()) {
+    for (std::size_t i = 0; i < tree.cluster_count(); ++i)
+      if (tree[ElementId(i)].is_cluster()) of_element[i] = static_cast<std::uint32_t>(count++);
+  }
+  std::uint32_t operator[](ElementId e) const { return of_element[e.value]; }
+};
+
+// I_r = sum of weight * B_s over the links of each element alone.
+void gather(SolverState& state, const ClusterNumbers& number,
+            std::vector<DirectionalIrradiance>& arriving) {
+  const ElementTree& tree = state.tree;
+  parallel_for(tree.size(), kGrain, [&](std::size_t i) {
+    const ElementId r(i);
+    if (tree[r].is_cluster()) {
+      DirectionalIrradiance& sum = arriving[number[r]];
+      sum = {};
+      for (const Link& l : state.links.of(r)) {
+        if (!l.sampled()) continue;
+        const Rgb e = l.weight * state.radiosity[l.source];
+        if (l.direction.all_around())
+          sum.add_isotropic(e);
+        else
+          sum.add(l.direction.unpack(), e);
+      }
+      return;
+    }
+    Rgb sum = tree[r].is_leaf() ? state.outer_light[r] : Rgb(0.f);
+    for (const Link& l : state.links.of(r))
+      if (l.sampled()) sum += l.weight * state.radiosity[l.source];
+    state.irradiance[r] = sum;
+  });
+}
+
+// Parents come before their children, so one pass in id order hands everything down.
+void push(SolverState& state, const ClusterNumbers& number,
+          std::vector<DirectionalIrradiance>& arriving) {
+  const ElementTree& tree = state.tree;
+  const std::size_t top = tree.cluster_count();
+  for (std::size_t i = 1; i < top; ++i) {
+    const ElementId e(i);
+    if (tree[e].is_cluster()) arriving[number[e]] += arriving[number[tree[e].parent]];
+  }
+  parallel_for(top, kGrain, [&](std::size_t i) {
+    const ElementId e(i);
+    if (!tree[e].is_cluster())
+      state.irradiance[e] += arriving[number[tree[e].parent]].irradiance(tree.normal(e));
+  });
+  for (std::size_t i = top; i < tree.size(); ++i)
+    state.irradiance[ElementId(i)] += state.irradiance[tree[ElementId(i)].parent];
+}
+
+}  // namespace
+
+void pull(SolverState& state) {
+  const ElementTree& tree = state.tree;
+  parallel_for(tree.size(), kGrain, [&](std::size_t i) {
+    const ElementId e(i);
+    if (!tree[e].is_cluster() && tree[e].is_leaf())
+      state.radiosity[e] = state.exitance[e] + state.reflectance[e] * state.irradiance[e];
+  });
+  for (std::size_t i = tree.size(); i-- > 0;) {
+    const ElementId e(i);
+    if (tree[e].is_leaf()) continue;
+    Rgb power(0.f);
+    float area = 0.f;
+    for (const ElementId child : tree[e].children()) {
+      power += tree[child].area * state.radiosity[child];
+      area += tree[child].area;
+    }
+    state.radiosity[e] = power / std::max(area, 1e-30f);
+  }
+}
+
+int sweep_to_convergence(SolverState& state, float tolerance, int most_sweeps) {
+  const ClusterNumbers number(state.tree);
+  std::vector<DirectionalIrradiance> arriving(number.count);
+  const float area = state.tree[state.tree.root()].area;
+  const auto total = [&] {
+    return parallel_sum(state.tree.size(), kGrain, 0.0, [&](std::size_t i) {
+      const Element& e = state.tree[ElementId(i)];
+      return e.is_cluster() || !e.is_leaf()
+                 ? 0.0
+                 : static_cast<double>(e.area * average(state.radiosity[ElementId(i)]));
+    });
+  };
+  double before = total();
+  for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
+    gather(state, number, arriving);
+    push(state, number, arriving);
+    pull(state);
+    const double after = total();
+    if (std::abs(after - before) <= static_cast<double>(tolerance) * std::max(after, 1e-30 * area))
+      return sweep;
+    before = after;
+  }
+  return most_sweeps;
+}
+
+}  // namespace halflight

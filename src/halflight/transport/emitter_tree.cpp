@@ -1,0 +1,241 @@
+#include "halflight/transport/emitter_tree.h"
+
+#include <algorithm>
+
+#include "halflight/rays/sampling.h"
+#include "halflight/transport/form_factor.h"
+
+namespace halflight {
+namespace {
+
+constexpr std::uint32_t kTextureSamples = 16;
+
+// Cosine of the angle between two directions less a third one's opening, never below -1.
+float cosine_of_difference(float cos_a, float cos_b) {
+  if (cos_a >= cos_b) return 1.f;
+  const float sin_a = std::sqrt(std::max(0.f, 1.f - cos_a * cos_a));
+  const float sin_b = std::sqrt(std::max(0.f, 1.f - cos_b * cos_b));
+  return cos_a * cos_b + sin_a * sin_b;
+}
+
+}  // namespace
+
+EmitterTree::EmitterTree(const World& world) : world_(&world) {
+  const Geometry& g = world.geometry;
+  for (std::uint32_t i = 0; i < g.triangles.size(); ++i) {
+    const TriangleId t(i);
+    const Material& m = world.scene.materials[g.materials[t]];
+    if (!m.emits()) continue;
+    Emitter e;
+    e.triangle = t;
+    e.textured = m.emission_texture.valid();
+    const std::uint32_t samples = e.textured ? kTextureSamples : 1;
+    for (std::uint32_t k = 0; k < samples; ++k)
+      e.radiance += emission_at(world.scene, g, t, uniform_triangle(r2_sequence(k))) /
+                    static_cast<float>(samples);
+    e.power = average(e.radiance) * 0.5f * glm::length(g.scaled_normal(t));
+    if (!(e.power > 0.f)) continue;
+    emitters_.push_back(e);
+    if (!m.double_sided) continue;
+    e.back = true;
+    emitters_.push_back(e);
+  }
+  if (emitters_.empty()) return;
+  nodes_.reserve(2 * emitters_.size());
+  build(0, static_cast<std::uint32_t>(emitters_.size()));
+  float sum = 0.f;
+  for (const Emitter& e : emitters_) cumulative_power_.push_back(sum += e.power);
+}
+
+Vec3 EmitterTree::normal_of(const Emitter& e) const {
+  return glm::normalize(world_->geometry.scaled_normal(e.triangle)) * (e.back ? -1.f : 1.f);
+}
+
+std::uint32_t EmitterTree::build(std::uint32_t first, std::uint32_t count) {
+  const Geometry& g = world_->geometry;
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  Node node;
+  node.first = first;
+  node.count = count;
+  Bounds3f centers;
+  const auto center = [&](const Emitter& e) {
+    const auto [a, b, c] = g.corners(e.triangle);
+    return (a + b + c) / 3.f;
+  };
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    for (const Vec3& p : g.corners(emitters_[i].triangle)) node.box.extend(p);
+    node.power += emitters_[i].power;
+    node.axis += emitters_[i].power * normal_of(emitters_[i]);
+    centers.extend(center(emitters_[i]));
+  }
+  node.cos_spread = -1.f;
+  if (glm::length(node.axis) > 1e-3f * node.power) {
+    node.axis = glm::normalize(node.axis);
+    node.cos_spread = 1.f;
+    for (std::uint32_t i = first; i < first + count; ++i)
+      node.cos_spread = std::min(node.cos_spread, glm::dot(node.axis, normal_of(emitters_[i])));
+  }
+  if (count > 1) {
+    const Vec3 e = centers.extent();
+    const int axis = e.x >= e.y && e.x >= e.z ? 0 : (e.y >= e.z ? 1 : 2);
+    const auto begin = emitters_.begin() + first;
+    std::stable_sort(begin, begin + count, [&](const Emitter& a, const Emitter& b) {
+      return center(a)[axis] < center(b)[axis];
+    });
+    build(first, count / 2);
+    node.right = build(first + count / 2, count - count / 2);
+  }
+  nodes_[index] = node;
+  return index;
+}
+
+bool EmitterTree::cannot_light(const Node& node, const Vec3& x, const Vec3& n) const {
+  const Vec3 farthest(n.x > 0.f ? node.box.upper.x : node.box.lower.x,
+                      n.y > 0.f ? node.box.upper.y : node.box.lower.y,
+                      n.z > 0.f ? node.box.upper.z : node.box.lower.z);
+  if (glm::dot(farthest - x, n) <= 0.f) return true;
+  if (node.cos_spread <= -1.f) return false;
+  // All normals n_e and directions to x keep more than a right angle apart.
+  const Vec3 towards_x = x - node.box.center();
+  const float distance = glm::length(towards_x), radius = 0.5f * node.box.diagonal();
+  if (distance <= radius) return false;
+  const float sin_box = radius / distance;
+  const float cos_box = std::sqrt(std::max(0.f, 1.f - sin_box * sin_box));
+  const float cos_axis = glm::dot(node.axis, towards_x) / distance;
+  return cosine_of_difference(cosine_of_difference(cos_axis, node.cos_spread), cos_box) <= 0.f;
+}
+
+// Unoccluded, closed form for single triangles, from the middle of the box for groups.
+float EmitterTree::expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const {
+  if (cannot_light(node, x, n)) return 0.f;
+  if (node.right == 0) {
+    const Emitter& e = emitters_[node.first];
+    const auto corners = world_->geometry.corners(e.triangle);
+    if (glm::dot(normal_of(e), x - corners[0]) <= 0.f) return 0.f;
+    return kPi * average(e.radiance) * polygon_form_factor(x, n, corners);
+  }
+  const Vec3 between = node.box.center() - x;
+  const float radius = 0.5f * node.box.diagonal();
+  const float distance = std::max(glm::length(between), radius);
+  const float cosine_x = std::max(0.05f, glm::dot(n, between) / distance);
+  const float cosine_e =
+      node.cos_spread > 0.f ? std::max(0.05f, -glm::dot(node.axis, between) / distance) : 0.5f;
+  return node.power * cosine_x * cosine_e / (distance * distance);
+}
+
+// Opens the strongest group until all that are left are weak or seen under a small angle.
+std::vector<EmitterTree::CutNode> EmitterTree::choose_cut(const Vec3& x, const Vec3& n,
+                                                          const DirectLightOptions& options) const {
+  std::vector<CutNode> cut, groups;  // groups: a heap of what may be opened
+  const auto weaker = [](const CutNode& a, const CutNode& b) { return a.expected < b.expected; };
+  float total = 0.f;
+  const auto add = [&](std::uint32_t index) {
+    const Node& node = nodes_[index];
+    const float expected = expected_irradiance(node, x, n);
+    if (!(expected > 0.f)) return;
+    total += expected;
+    const float distance = glm::length(node.box.center() - x);
+    if (node.right == 0 || node.box.diagonal() < options.smallest_angle * distance) {
+      cut.push_back({index, expected});
+    } else {
+      groups.push_back({index, expected});
+      std::push_heap(groups.begin(), groups.end(), weaker);
+    }
+  };
+  add(0);
+  while (!groups.empty() && groups.front().expected > options.largest_group_share * total) {
+    const CutNode opened = groups.front();
+    std::pop_heap(groups.begin(), groups.end(), weaker);
+    groups.pop_back();
+    total -= opened.expected;
+    add(opened.node + 1);
+    add(nodes_[opened.node].right);
+  }
+  cut.insert(cut.end(), groups.begin(), groups.end());
+  return cut;
+}
+
+Rgb EmitterTree::from_triangle(const Emitter& e, const Vec3& x, const Vec3& n, int rays,
+                               int more_rays) const {
+  const Geometry& g = world_->geometry;
+  const auto corner = g.corners(e.triangle);
+  const Vec3 normal = normal_of(e);
+  if (glm::dot(normal, x - corner[0]) <= 0.f) return Rgb(0.f);
+  const float form_factor = polygon_form_factor(x, n, corner);
+  const Vec3 from = world_->rays.lift(x, n);
+  // The closed form carries the kernel; rays carry its visible share, weighted by the kernel.
+  float kernel_sum = 0.f, seen_sum = 0.f;
+  Rgb seen_radiance(0.f);
+  int taken = 0;
+  const auto shoot = [&](int until) {
+    for (; taken < until; ++taken) {
+      const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(taken)));
+      const Vec3 y = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
+      const Vec3 between = y - x;
+      const float squared = std::max(glm::dot(between, between), 1e-20f);
+      const float kernel = std::max(0.f, glm::dot(n, between)) *
+                           std::max(0.f, -glm::dot(normal, between)) / (squared * squared);
+      if (!(kernel > 0.f)) continue;
+      kernel_sum += kernel;
+      const float seen = kernel * world_->rays.transmittance(from, world_->rays.lift(y, normal));
+      seen_sum += seen;
+      seen_radiance +=
+          seen * (e.textured ? emission_at(world_->scene, g, e.triangle, b) : e.radiance);
+    }
+  };
+  shoot(rays);
+  const bool mixed = seen_sum > 1e-4f * kernel_sum && seen_sum < 0.9999f * kernel_sum;
+  if ((mixed || e.textured) && more_rays > rays) shoot(more_rays);
+  return kernel_sum > 0.f ? kPi * form_factor * seen_radiance / kernel_sum : Rgb(0.f);
+}
+
+Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int rays) const {
+  const Geometry& g = world_->geometry;
+  const Vec3 from = world_->rays.lift(x, n);
+  const float before = node.first == 0 ? 0.f : cumulative_power_[node.first - 1];
+  const auto begin = cumulative_power_.begin() + node.first;
+  Rgb sum(0.f);
+  for (int k = 0; k < rays; ++k) {
+    const float stratum = (static_cast<float>(k) + 0.5f) / static_cast<float>(rays);
+    const auto found = std::upper_bound(begin, begin + node.count, before + stratum * node.power);
+    const auto offset = std::min<std::ptrdiff_t>(found - begin, node.count - 1);
+    const Emitter& e = emitters_[node.first + static_cast<std::uint32_t>(offset)];
+    const auto corner = g.corners(e.triangle);
+    const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(k)));
+    const Vec3 y = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
+    const Vec3 normal = normal_of(e), between = y - x;
+    const float squared = glm::dot(between, between);
+    const float cosines = std::max(0.f, glm::dot(n, between)) * std::max(0.f, -glm::dot(normal, between));
+    if (!(cosines > 0.f)) continue;
+    // Chosen with density power / (area * node power): radiance / density, colour kept.
+    const Rgb colour = e.radiance / average(e.radiance);
+    sum += colour * (node.power * cosines / (squared * squared) *
+                     world_->rays.transmittance(from, world_->rays.lift(y, normal)));
+  }
+  return sum / static_cast<float>(rays);
+}
+
+Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options) const {
+  if (empty()) return Rgb(0.f);
+  const std::vector<CutNode> cut = choose_cut(x, n, options);
+  float expected = 0.f;
+  for (const CutNode& c : cut) expected += c.expected;
+  Rgb sum(0.f);
+  for (const CutNode& c : cut) {
+    const Node& node = nodes_[c.node];
+    // Rays go where the light comes from: the full number to what gives half of it or more.
+    const float share = std::min(1.f, 2.f * c.expected / expected);
+    const auto rays_for = [&](int most) {
+      return std::max(1, static_cast<int>(std::ceil(share * static_cast<float>(most))));
+    };
+    if (node.right == 0)
+      sum += from_triangle(emitters_[node.first], x, n, rays_for(options.shadow_rays),
+                           rays_for(options.penumbra_rays));
+    else
+      sum += from_group(node, x, n, rays_for(options.penumbra_rays));
+  }
+  return sum;
+}
+
+}  // namespace halflight

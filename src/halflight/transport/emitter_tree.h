@@ -1,0 +1,66 @@
+// A binary tree over the emitting triangles, for direct light by a cut: near emitters one by one,
+// far groups by sampled representatives (after Walter et al. 2005, "Lightcuts").
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "halflight/base/vec.h"
+#include "halflight/rays/world.h"
+
+namespace halflight {
+
+struct DirectLightOptions {
+  int shadow_rays = 16;    // to an emitter that gives most of the light, before looking closer
+  int penumbra_rays = 64;  // where the first ones disagree
+  // A group stands for its members when it gives at most this share of the light at the point, or
+  // is seen under at most this angle (size / distance).
+  float largest_group_share = 0.02f;
+  float smallest_angle = 0.01f;
+};
+
+class EmitterTree {
+ public:
+  explicit EmitterTree(const World& world);
+  bool empty() const { return emitters_.empty(); }
+
+  // Irradiance at x with unit normal n from all emitting surfaces, shadows by exact rays. The sample
+  // pattern is the same everywhere: no noise, penumbrae in as many steps as there are rays.
+  Rgb irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options) const;
+
+ private:
+  struct Emitter {
+    TriangleId triangle;
+    bool back = false;    // emits from the clockwise side
+    Rgb radiance{0.f};    // mean over the triangle
+    bool textured = false;
+    float power = 0.f;    // average(radiance) * area
+  };
+  struct Node {
+    Bounds3f box;
+    Vec3 axis{0.f};           // of the cone that holds all emitter normals
+    float cos_spread = 1.f;   // -1: no cone
+    float power = 0.f;
+    std::uint32_t first = 0, count = 0;  // emitters
+    std::uint32_t right = 0;             // second child; the first follows its parent; 0: a leaf
+  };
+  struct CutNode {
+    std::uint32_t node = 0;
+    float expected = 0.f;  // unoccluded irradiance, roughly
+  };
+
+  std::uint32_t build(std::uint32_t first, std::uint32_t count);
+  bool cannot_light(const Node& node, const Vec3& x, const Vec3& n) const;
+  float expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const;
+  std::vector<CutNode> choose_cut(const Vec3& x, const Vec3& n, const DirectLightOptions&) const;
+  Vec3 normal_of(const Emitter& e) const;
+  Rgb from_triangle(const Emitter& e, const Vec3& x, const Vec3& n, int rays, int more_rays) const;
+  Rgb from_group(const Node& node, const Vec3& x, const Vec3& n, int rays) const;
+
+  const World* world_;
+  std::vector<Emitter> emitters_;
+  std::vector<float> cumulative_power_;  // after each emitter, over all
+  std::vector<Node> nodes_;
+};
+
+}  // namespace halflight

@@ -1,0 +1,60 @@
+#include "halflight/transport/link.h"
+
+#include <algorithm>
+
+namespace halflight {
+namespace {
+
+constexpr float kOctahedralScale = 32766.f;
+
+std::uint32_t quantise(float v) {
+  return static_cast<std::uint32_t>(
+      std::lround(std::clamp(v, -1.f, 1.f) * kOctahedralScale) + 32767);
+}
+float sign_not_zero(float v) { return v >= 0.f ? 1.f : -1.f; }
+
+}  // namespace
+
+PackedDirection::PackedDirection(const Vec3& unit) {
+  const float norm = std::abs(unit.x) + std::abs(unit.y) + std::abs(unit.z);
+  if (!(norm > 0.f)) return;
+  Vec2 p = Vec2(unit.x, unit.y) / norm;
+  if (unit.z < 0.f)
+    p = Vec2((1.f - std::abs(p.y)) * sign_not_zero(p.x), (1.f - std::abs(p.x)) * sign_not_zero(p.y));
+  bits_ = quantise(p.x) | quantise(p.y) << 16;
+}
+
+Vec3 PackedDirection::unpack() const {
+  const auto value = [&](int shift) {
+    return (static_cast<float>(bits_ >> shift & 0xffffu) - 32767.f) / kOctahedralScale;
+  };
+  Vec3 v(value(0), value(16), 0.f);
+  v.z = 1.f - std::abs(v.x) - std::abs(v.y);
+  if (v.z < 0.f) {
+    const Vec2 folded((1.f - std::abs(v.y)) * sign_not_zero(v.x),
+                      (1.f - std::abs(v.x)) * sign_not_zero(v.y));
+    v.x = folded.x;
+    v.y = folded.y;
+  }
+  return glm::normalize(v);
+}
+
+LinkTable::LinkTable(std::size_t element_count, std::vector<ReceiverLink> links)
+    : first_(element_count + 1, 0), links_(links.size()) {
+  for (const ReceiverLink& l : links) ++first_[l.receiver.value + 1];
+  for (std::size_t i = 0; i < element_count; ++i) first_[i + 1] += first_[i];
+  std::vector<std::uint64_t> next(first_.begin(), first_.end() - 1);
+  for (const ReceiverLink& l : links) links_[next[l.receiver.value]++] = l.link;
+}
+
+std::vector<ReceiverLink> LinkTable::release() {
+  std::vector<ReceiverLink> list;
+  list.reserve(links_.size());
+  for (std::size_t r = 0; r + 1 < first_.size(); ++r)
+    for (std::uint64_t i = first_[r]; i < first_[r + 1]; ++i)
+      list.push_back({ElementId(r), links_[i]});
+  *this = {};
+  return list;
+}
+
+}  // namespace halflight

@@ -1,0 +1,197 @@
+#include "halflight/transport/refine.h"
+
+#include <algorithm>
+
+#include "halflight/base/parallel.h"
+
+namespace halflight {
+namespace {
+
+constexpr std::size_t kBatch = 1 << 17;  // pairs judged at once
+constexpr int kSamples = 4;
+constexpr int kBlindSamples = 16;        // on cells above largest_blind_cell
+constexpr int kKeptSamples = 16;
+constexpr int kFinalSamples = 32;        // of a strong link that cannot be refined
+// A pair whose whole transfer is below this share of the threshold gets a single sample.
+constexpr float kNegligible = 0.5f;
+// A pair whose kernel alone varies by this multiple of the threshold is refined without a ray.
+constexpr float kHopeless = 4.f;
+// Share of the kernel's variation that is not seen in the spread of samples.
+constexpr float kUnseenVariation = 0.1f;
+
+// Streams of samples: to decide with, and to keep.
+constexpr std::uint64_t kPilot = 1, kFinal = 2;
+
+struct Verdict {
+  enum class Kind : std::uint8_t { drop, accept, split_receiver, split_source, split_both };
+  Kind kind = Kind::drop;
+  std::uint8_t rays = 0;
+  Link link;
+};
+
+// Judges pairs: the oracle of the refinement.
+class Oracle {
+ public:
+  Oracle(const TransferScene& scene, const RefineOptions& options, bool accept_all)
+      : scene_(scene), options_(options), accept_all_(accept_all) {
+    scene_area_ = scene.tree[scene.tree.root()].area;
+  }
+
+  Verdict judge(ElementId r, ElementId s) const {
+    const ElementTree& tree = scene_.tree;
+    if (r != s && back_facing(tree, r, s)) return {};
+    const float radiosity = average(scene_.radiosity[s]);
+    const TransferBounds bounds = bound_transfer(tree, r, s);
+    if (!(radiosity > 0.f)) {
+      Link dark;
+      dark.source = s;
+      dark.weight = Link::kUnsampled;
+      dark.error = bounds.largest_weight;
+      return {Verdict::Kind::accept, 0, dark};
+    }
+    const float scale = radiosity * std::sqrt(tree[r].area / scene_area_);
+    const Verdict::Kind finer = accept_all_ ? Verdict::Kind::accept : choose_split(r, s);
+    const bool can_refine = finer != Verdict::Kind::accept;
+    const float threshold = options_.irradiance_threshold;
+
+    const float strongest = scale * bounds.largest_weight;
+    if (strongest <= kNegligible * threshold) return accept(r, s, 1, bounds);
+    const bool clusters = tree[r].is_cluster() || tree[s].is_cluster();
+    if (bounds.touching && clusters)
+      return can_refine ? Verdict{finer, 0, {}} : accept(r, s, kFinalSamples, bounds);
+    if (can_refine && strongest * bounds.kernel_variation > kHopeless * threshold &&
+        bounds.kernel_variation >= 0.5f && clusters)
+      return {finer, 0, {}};
+    if (!can_refine) return accept(r, s, kFinalSamples, bounds);
+
+    TransferEstimate pilot = estimate_transfer(scene_, r, s, kSamples, kPilot);
+    // A few samples on a large cell that agree may all have missed a shadow, or the light.
+    if (is_blind(r) && scale * pilot.deviation <= threshold && scale * pilot.unoccluded > threshold)
+      pilot = estimate_transfer(scene_, r, s, kBlindSamples, kPilot);
+    const float error = pilot.deviation + kUnseenVariation * bounds.kernel_variation * pilot.weight;
+    if (scale * error > threshold) return {finer, kSamples, {}};
+    Verdict verdict = accept(r, s, kKeptSamples, bounds);
+    verdict.link.error = std::max(verdict.link.error, error);
+    verdict.rays += kSamples;
+    return verdict;
+  }
+
+ private:
+  // The weight comes from samples that had no say in the decision: whoever accepts a pair because
+  // its samples agree, and keeps those samples, systematically loses what they missed.
+  Verdict accept(ElementId r, ElementId s, int samples, const TransferBounds& bounds) const {
+    const bool cells = !scene_.tree[r].is_cluster() && !scene_.tree[s].is_cluster();
+    const TransferEstimate t =
+        bounds.touching && !cells ? estimate_touching_transfer(scene_, r, s, samples, kFinal)
+                                  : estimate_transfer(scene_, r, s, samples, kFinal);
+    Verdict verdict;
+    verdict.kind = Verdict::Kind::accept;
+    verdict.rays = static_cast<std::uint8_t>(samples);
+    verdict.link.source = s;
+    verdict.link.weight = std::min(t.weight, bounds.largest_weight);
+    // What n samples missed may still be one part in n + 1 (rule of succession).
+    verdict.link.error = samples == 1 ? bounds.largest_weight
+                                      : std::max(t.deviation, t.unoccluded / static_cast<float>(samples + 1));
+    verdict.link.direction = t.direction;
+    return verdict;
+  }
+
+  bool is_blind(ElementId r) const {
+    return !scene_.tree[r].is_cluster() &&
+           scene_.tree.cell_size(r) > options_.largest_blind_cell;
+  }
+
+  bool can_split(ElementId e) const {
+    const Element& element = scene_.tree[e];
+    return !element.is_leaf() || (!element.is_cluster() &&
+                                  scene_.tree.cell_size(e) > 2.f * options_.smallest_cell);
+  }
+
+  // The larger end first; `accept` when neither end can be split.
+  Verdict::Kind choose_split(ElementId r, ElementId s) const {
+    if (r == s) return Verdict::Kind::split_both;
+    const bool receiver = can_split(r), source = can_split(s);
+    if (receiver && (!source || scene_.tree[r].diameter() >= scene_.tree[s].diameter()))
+      return Verdict::Kind::split_receiver;
+    return source ? Verdict::Kind::split_source : Verdict::Kind::accept;
+  }
+
+  const TransferScene& scene_;
+  const RefineOptions& options_;
+  bool accept_all_;
+  float scene_area_;
+};
+
+// Splits the cells that verdicts ask for, each once, in id order.
+void split_cells(ElementTree& tree, const std::vector<ElementPair>& batch,
+                 const std::vector<Verdict>& verdicts, const SplitListener& on_split) {
+  std::vector<ElementId> wanted;
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    const Verdict::Kind kind = verdicts[i].kind;
+    if (kind == Verdict::Kind::split_receiver && tree[batch[i].receiver].is_leaf())
+      wanted.push_back(batch[i].receiver);
+    if (kind == Verdict::Kind::split_source && tree[batch[i].source].is_leaf())
+      wanted.push_back(batch[i].source);
+  }
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  for (const ElementId cell : wanted) tree.split(cell);
+  if (!wanted.empty()) on_split(wanted);
+}
+
+void append_finer_pairs(const ElementTree& tree, const ElementPair& pair, Verdict::Kind kind,
+                        std::vector<ElementPair>& out) {
+  if (kind == Verdict::Kind::split_receiver) {
+    for (const ElementId r : tree[pair.receiver].children()) out.push_back({r, pair.source});
+  } else if (kind == Verdict::Kind::split_source) {
+    for (const ElementId s : tree[pair.source].children()) out.push_back({pair.receiver, s});
+  } else {  // a self-link: all ordered pairs; a plane side does not see itself
+    for (const ElementId r : tree[pair.receiver].children())
+      for (const ElementId s : tree[pair.receiver].children())
+        if (r != s || tree[r].is_cluster()) out.push_back({r, s});
+  }
+}
+
+}  // namespace
+
+void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, Rgb>& radiosity,
+            std::vector<ElementPair> pairs, const RefineOptions& options,
+            const SplitListener& on_split, const Progress& progress,
+            std::vector<ReceiverLink>& links, RefineCounts& counts) {
+  std::vector<ElementPair> batch;
+  std::vector<Verdict> verdicts;
+  while (!pairs.empty()) {
+    const std::size_t n = std::min(pairs.size(), kBatch);
+    batch.assign(pairs.end() - static_cast<std::ptrdiff_t>(n), pairs.end());
+    pairs.resize(pairs.size() - n);
+    const bool accept_all = links.size() > options.most_links || progress.cancelled();
+
+    const TransferScene scene{tree, rays, radiosity};
+    const Oracle oracle(scene, options, accept_all);
+    verdicts.assign(n, {});
+    parallel_for(n, 64, [&](std::size_t i) {
+      verdicts[i] = oracle.judge(batch[i].receiver, batch[i].source);
+    });
+
+    split_cells(tree, batch, verdicts, on_split);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Verdict& v = verdicts[i];
+      counts.rays += v.rays;
+      if (v.kind == Verdict::Kind::accept) {
+        if (v.link.weight != 0.f || v.link.error > 0.f) links.push_back({batch[i].receiver, v.link});
+      } else if (v.kind != Verdict::Kind::drop) {
+        append_finer_pairs(tree, batch[i], v.kind, pairs);
+      }
+    }
+    counts.pairs += n;
+    if (accept_all) counts.accepted_early += n;
+  }
+}
+
+float weighted_error(const ElementTree& tree, ElementId receiver, const Link& link,
+                     const IdVector<ElementId, Rgb>& radiosity) {
+  return link.error * average(radiosity[link.source]) *
+         std::sqrt(tree[receiver].area / tree[tree.root()].area);
+}
+
+}  // namespace halflight

@@ -1,0 +1,52 @@
+// Refinement: from a list of element pairs to links whose estimated error is small enough.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "halflight/base/progress.h"
+#include "halflight/hierarchy/elements.h"
+#include "halflight/rays/ray_scene.h"
+#include "halflight/transport/link.h"
+#include "halflight/transport/transfer.h"
+
+namespace halflight {
+
+struct RefineOptions {
+  // A link of irradiance error e on a receiver of area A is accepted when
+  // e * sqrt(A / scene area) <= irradiance_threshold (W/m2): independent errors add in the square,
+  // weighted by the area they fall on, so this equalises what links add to the RMS error.
+  float irradiance_threshold = 0.f;
+  // Cells are not split below this size: half the feature size (the feature gate).
+  float smallest_cell = 0.f;
+  // Cells larger than this are split whatever their samples say, as samples can miss a shadow.
+  float largest_blind_cell = kInfinity;
+  std::size_t most_links = 40'000'000;  // beyond it pairs are accepted as they are, and counted
+};
+
+struct RefineCounts {
+  std::uint64_t pairs = 0;       // visited
+  std::uint64_t rays = 0;        // exact visibility
+  std::uint64_t accepted_early = 0;  // because most_links was reached
+};
+
+struct ElementPair {
+  ElementId receiver, source;
+};
+
+// Told when cells were split, so that per-element data can follow: old and new element count.
+using SplitListener = std::function<void(const std::vector<ElementId>& split_cells)>;
+
+// Processes pairs until none is left and appends the links in a fixed order. Pairs whose source is
+// dark are kept as unsampled links. Deterministic for any thread count.
+void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, Rgb>& radiosity,
+            std::vector<ElementPair> pairs, const RefineOptions& options,
+            const SplitListener& on_split, const Progress& progress,
+            std::vector<ReceiverLink>& links, RefineCounts& counts);
+
+// Error of a link in irradiance at its receiver, in the units of irradiance_threshold.
+float weighted_error(const ElementTree& tree, ElementId receiver, const Link& link,
+                     const IdVector<ElementId, Rgb>& radiosity);
+
+}  // namespace halflight
