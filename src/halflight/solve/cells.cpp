@@ -8,8 +8,9 @@ namespace halflight {
 namespace {
 
 constexpr std::uint32_t kTextureSamples = 8;
-constexpr std::uint32_t kOuterSamples = 4;  // points of a cell
-constexpr int kSkyRays = 16;                // of each point
+constexpr std::uint32_t kPointsOfCell = 4;
+constexpr int kSkyRays = 16;  // of each point
+constexpr DirectLightOptions kCellDirectLight{.shadow_rays = 4, .penumbra_rays = 8};
 
 Vec2 barycentric_of(const Geometry& g, const SurfacePoint& p) {
   const auto [a, b, c] = g.corners(p.triangle);
@@ -19,26 +20,30 @@ Vec2 barycentric_of(const Geometry& g, const SurfacePoint& p) {
           glm::dot(glm::cross(b - a, p.position - a), n) / area};
 }
 
-struct OuterLight {
+struct GivenLight {
   Rgb mean{0.f};
   float deviation = 0.f;
 };
 
-OuterLight sample_outer_light(const SolverState& state, ElementId cell) {
+GivenLight sample_given_light(const SolverState& state, ElementId cell, const EmitterTree* emitters) {
   const Vec3 n = state.tree.normal(cell);
-  OuterLight result;
+  const bool whole_and_small = state.tree.cell_size(cell) < state.options.feature_size;
+  const std::uint32_t samples = whole_and_small ? 1 : kPointsOfCell;
+  GivenLight result;
   float sum = 0.f, squares = 0.f;
   const Vec2 shift = random_shift(hash(cell.value, 11));
-  for (std::uint32_t k = 0; k < kOuterSamples; ++k) {
+  for (std::uint32_t k = 0; k < samples; ++k) {
     const Vec3 x = state.tree.sample(cell, r2_sequence(k, shift)).position;
-    const Rgb e = punctual_irradiance(*state.world, x, n) +
-                  sky_irradiance(*state.world, x, n, kSkyRays, random_shift(hash(cell.value, k)));
-    result.mean += e / static_cast<float>(kOuterSamples);
+    Rgb e = punctual_irradiance(*state.world, x, n) +
+            sky_irradiance(*state.world, x, n, kSkyRays, random_shift(hash(cell.value, k)));
+    if (emitters) e += emitters->irradiance(x, n, kCellDirectLight);
+    result.mean += e / static_cast<float>(samples);
     sum += average(e);
     squares += average(e) * average(e);
   }
-  const float count = kOuterSamples;
-  result.deviation = std::sqrt(std::max(0.f, (squares - sum * sum / count) / (count - 1.f)));
+  const auto count = static_cast<float>(samples);
+  if (samples > 1)
+    result.deviation = std::sqrt(std::max(0.f, (squares - sum * sum / count) / (count - 1.f)));
   return result;
 }
 
@@ -70,15 +75,15 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   const std::size_t n = state.tree.size();
   state.reflectance.resize(n);
   state.exitance.resize(n);
-  state.outer_light.resize(n);
-  state.outer_light_known.resize(n, 0);
+  state.given_light.resize(n);
+  state.given_light_known.resize(n, 0);
   state.irradiance.resize(n);
   state.radiosity.resize(n);
   parallel_for(split_cells.size(), 64, [&](std::size_t i) {
     const ElementId parent = split_cells[i];
     for (const ElementId child : state.tree[parent].children()) {
       evaluate_material(state, child);
-      state.outer_light[child] = state.outer_light[parent];
+      state.given_light[child] = state.given_light[parent];
       state.irradiance[child] = state.irradiance[parent];
       state.radiosity[child] =
           state.exitance[child] + state.reflectance[child] * state.irradiance[child];
@@ -86,12 +91,12 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   });
 }
 
-void update_outer_light(SolverState& state, float irradiance_threshold, std::uint64_t& rays) {
-  if (!has_outer_light(*state.world)) return;
+void update_given_light(SolverState& state, float irradiance_threshold, const EmitterTree* emitters) {
+  if (!has_outer_light(*state.world) && !emitters) return;
   std::vector<ElementId> open;
   for (std::size_t i = 0; i < state.tree.size(); ++i) {
     const ElementId e(i);
-    if (!state.tree[e].is_cluster() && state.tree[e].is_leaf() && !state.outer_light_known[e])
+    if (!state.tree[e].is_cluster() && state.tree[e].is_leaf() && !state.given_light_known[e])
       open.push_back(e);
   }
   const float scene_area = state.tree[state.tree.root()].area;
@@ -99,14 +104,13 @@ void update_outer_light(SolverState& state, float irradiance_threshold, std::uin
     std::vector<std::uint8_t> uneven(open.size());
     parallel_for(open.size(), 16, [&](std::size_t i) {
       const ElementId e = open[i];
-      const OuterLight light = sample_outer_light(state, e);
-      state.outer_light[e] = light.mean;
-      state.outer_light_known[e] = 1;
+      const GivenLight light = sample_given_light(state, e, emitters);
+      state.given_light[e] = light.mean;
+      state.given_light_known[e] = 1;
       const float error = light.deviation * std::sqrt(state.tree[e].area / scene_area);
       uneven[i] = error > irradiance_threshold &&
                   state.tree.cell_size(e) > state.options.feature_size;
     });
-    rays += open.size() * kOuterSamples;
     std::vector<ElementId> split;
     for (std::size_t i = 0; i < open.size(); ++i)
       if (uneven[i]) split.push_back(open[i]);

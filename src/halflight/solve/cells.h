@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "halflight/solve/solver.h"
+#include "halflight/transport/emitter_tree.h"
 
 namespace halflight {
 
@@ -13,8 +14,9 @@ void evaluate_material(SolverState& state, ElementId cell);
 // Gives new children the light of their split parent and their own material.
 void inherit(SolverState& state, const std::vector<ElementId>& split_cells);
 
-// Evaluates punctual lights and sky on all leaf cells where they are not known yet, and splits cells
-// on which they vary by more than the threshold (as in RefineOptions).
-void update_outer_light(SolverState& state, float irradiance_threshold, std::uint64_t& rays);
+// Evaluates the light that links do not carry on all leaf cells where it is not known yet, and splits
+// cells on which it varies by more than the threshold (as in RefineOptions). `emitters` adds emitting
+// surfaces to punctual lights and sky; null leaves them to the links.
+void update_given_light(SolverState& state, float irradiance_threshold, const EmitterTree* emitters);
 
 }  // namespace halflight

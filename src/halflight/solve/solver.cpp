@@ -7,7 +7,9 @@
 #include "halflight/hierarchy/size_grid.h"
 #include "halflight/solve/cells.h"
 #include "halflight/solve/sweep.h"
+#include "halflight/transport/emitter_tree.h"
 #include "halflight/transport/outer_light.h"
+#include "halflight/transport/sampled_links.h"
 
 namespace halflight {
 namespace {
@@ -17,6 +19,7 @@ namespace {
 constexpr float kThresholdPerError = 0.02f;
 constexpr float kThresholdRatio = 4.f;  // between passes
 constexpr float kBlindCells = 8.f;      // RefineOptions::largest_blind_cell in feature sizes
+constexpr float kClusterSizes = 1.f;    // SampledLinkOptions::largest_cluster in feature sizes
 constexpr float kSweepTolerance = 1e-5f;
 constexpr int kMostSweeps = 200;
 
@@ -31,7 +34,7 @@ float first_guess_of_irradiance(const SolverState& state) {
     const ElementId e(i);
     if (!state.tree[e].is_cluster() && state.tree[e].is_leaf())
       power += static_cast<double>(
-          state.tree[e].area * average(state.exitance[e] + state.outer_light[e]));
+          state.tree[e].area * average(state.exitance[e] + state.given_light[e]));
   }
   return static_cast<float>(power) / std::max(state.tree[state.tree.root()].area, 1e-30f);
 }
@@ -50,6 +53,18 @@ std::vector<ElementPair> take_failing_links(SolverState& state, float threshold,
   return failing;
 }
 
+// The elements stay; light from emitters is read exactly on each, the rest travels along rays.
+std::vector<ReceiverLink> replace_by_sampled_links(SolverState& state, float threshold) {
+  const EmitterTree emitters(*state.world);
+  state.emission_is_given = true;
+  std::fill(state.given_light_known.begin(), state.given_light_known.end(), 0);
+  update_given_light(state, threshold, &emitters);
+  SampledLinkOptions options;
+  options.largest_cluster = kClusterSizes * state.options.feature_size;
+  return sample_links(state.tree, state.world->rays,
+                      choose_receivers(state.tree, options.largest_cluster), options);
+}
+
 }  // namespace
 
 SolverState make_state(std::shared_ptr<const World> world, const SolveOptions& options) {
@@ -61,15 +76,15 @@ SolverState make_state(std::shared_ptr<const World> world, const SolveOptions& o
                     surfaces,
                     ElementTree(world->geometry, *surfaces, build_size_grid(boxes), live),
                     options,
-                    {}, {}, {}, {}, {}, {}, {}, {}};
+                    {}, {}, {}, {}, false, {}, {}, {}, {}};
   if (!(state.options.feature_size > 0.f))
     state.options.feature_size = world->geometry.bounds.diagonal() / 200.f;
 
   const std::size_t n = state.tree.size();
   state.reflectance.resize(n);
   state.exitance.resize(n);
-  state.outer_light.resize(n, Rgb(0.f));
-  state.outer_light_known.resize(n, 0);
+  state.given_light.resize(n, Rgb(0.f));
+  state.given_light_known.resize(n, 0);
   state.irradiance.resize(n, Rgb(0.f));
   state.radiosity.resize(n, Rgb(0.f));
   parallel_for(n, 256, [&](std::size_t i) {
@@ -88,7 +103,7 @@ void advance(SolverState& state, const Progress& progress) {
       kThresholdPerError * state.options.error * mean *
       std::pow(kThresholdRatio, static_cast<float>(std::max(0, state.options.passes - 1 - pass)));
 
-  update_outer_light(state, record.irradiance_threshold, record.rays);
+  update_given_light(state, record.irradiance_threshold, nullptr);
   if (pass == 0) pull(state);
 
   std::vector<ReceiverLink> links;
@@ -105,7 +120,9 @@ void advance(SolverState& state, const Progress& progress) {
   RefineCounts counts;
   refine(state.tree, state.world->rays, state.radiosity, std::move(pairs), refine_options,
          [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress, links, counts);
-  update_outer_light(state, record.irradiance_threshold, record.rays);
+  update_given_light(state, record.irradiance_threshold, nullptr);
+  if (state.options.links == LinkMaker::sampled && pass + 1 == state.options.passes)
+    links = replace_by_sampled_links(state, record.irradiance_threshold);
   state.links = LinkTable(state.tree.size(), std::move(links));
   record.refine_seconds = seconds_since(start);
 
@@ -124,7 +141,7 @@ EnergyBalance energy_balance(const SolverState& state) {
     const ElementId e(i);
     if (state.tree[e].is_cluster() || !state.tree[e].is_leaf()) continue;
     const float area = state.tree[e].area;
-    balance.emitted += area * (state.exitance[e] + state.outer_light[e]);
+    balance.emitted += area * (state.exitance[e] + state.given_light[e]);
     balance.absorbed += area * (Rgb(1.f) - state.reflectance[e]) * state.irradiance[e];
   }
   balance.escaped = balance.emitted - balance.absorbed;

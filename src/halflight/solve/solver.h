@@ -13,9 +13,15 @@
 
 namespace halflight {
 
+enum class LinkMaker {
+  refined,  // the paper's: from the root's self-link, refined by an error oracle
+  sampled,  // refined ones shape the elements, then rays from every receiver take their place
+};
+
 struct SolveOptions {
   float feature_size = 0.f;  // s, metres: smallest shadow kept exact; 0: scene diagonal / 200
   float error = 0.05f;       // aimed-at relative RMS error of irradiance
+  LinkMaker links = LinkMaker::sampled;
   int passes = 3;            // settings of the threshold, coarse to fine
   std::size_t most_links = 40'000'000;
 };
@@ -40,8 +46,11 @@ struct SolverState {
 
   IdVector<ElementId, Rgb> reflectance;   // of cells
   IdVector<ElementId, Rgb> exitance;      // pi L of cells
-  IdVector<ElementId, Rgb> outer_light;   // irradiance of leaf cells by punctual lights and sky
-  IdVector<ElementId, std::uint8_t> outer_light_known;
+  // Irradiance of leaf cells that links do not carry: by punctual lights and the sky, and with
+  // sampled links by emitting surfaces too.
+  IdVector<ElementId, Rgb> given_light;
+  IdVector<ElementId, std::uint8_t> given_light_known;
+  bool emission_is_given = false;         // links carry reflected light only
   IdVector<ElementId, Rgb> irradiance;    // E of cells, from all links above and at them
   IdVector<ElementId, Rgb> radiosity;     // B = rho E + pi L, mean over the element's area
   LinkTable links;

@@ -24,6 +24,9 @@ struct ClusterNumbers {
 void gather(SolverState& state, const ClusterNumbers& number,
             std::vector<DirectionalIrradiance>& arriving) {
   const ElementTree& tree = state.tree;
+  const auto sent = [&](ElementId s) {
+    return state.emission_is_given ? state.radiosity[s] - state.exitance[s] : state.radiosity[s];
+  };
   parallel_for(tree.size(), kGrain, [&](std::size_t i) {
     const ElementId r(i);
     if (tree[r].is_cluster()) {
@@ -31,7 +34,7 @@ void gather(SolverState& state, const ClusterNumbers& number,
       sum = {};
       for (const Link& l : state.links.of(r)) {
         if (!l.sampled()) continue;
-        const Rgb e = l.weight * state.radiosity[l.source];
+        const Rgb e = l.weight * sent(l.source);
         if (l.direction.all_around())
           sum.add_isotropic(e);
         else
@@ -39,9 +42,9 @@ void gather(SolverState& state, const ClusterNumbers& number,
       }
       return;
     }
-    Rgb sum = tree[r].is_leaf() ? state.outer_light[r] : Rgb(0.f);
+    Rgb sum = tree[r].is_leaf() ? state.given_light[r] : Rgb(0.f);
     for (const Link& l : state.links.of(r))
-      if (l.sampled()) sum += l.weight * state.radiosity[l.source];
+      if (l.sampled()) sum += l.weight * sent(l.source);
     state.irradiance[r] = sum;
   });
 }

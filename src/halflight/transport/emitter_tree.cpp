@@ -106,7 +106,7 @@ bool EmitterTree::cannot_light(const Node& node, const Vec3& x, const Vec3& n) c
   return cosine_of_difference(cosine_of_difference(cos_axis, node.cos_spread), cos_box) <= 0.f;
 }
 
-// Unoccluded, closed form for single triangles, from the middle of the box for groups.
+// Unoccluded: closed form for single triangles, an upper bound for groups.
 float EmitterTree::expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const {
   if (cannot_light(node, x, n)) return 0.f;
   if (node.right == 0) {
@@ -115,13 +115,9 @@ float EmitterTree::expected_irradiance(const Node& node, const Vec3& x, const Ve
     if (glm::dot(normal_of(e), x - corners[0]) <= 0.f) return 0.f;
     return kPi * average(e.radiance) * polygon_form_factor(x, n, corners);
   }
-  const Vec3 between = node.box.center() - x;
-  const float radius = 0.5f * node.box.diagonal();
-  const float distance = std::max(glm::length(between), radius);
-  const float cosine_x = std::max(0.05f, glm::dot(n, between) / distance);
-  const float cosine_e =
-      node.cos_spread > 0.f ? std::max(0.05f, -glm::dot(node.axis, between) / distance) : 0.5f;
-  return node.power * cosine_x * cosine_e / (distance * distance);
+  const Vec3 nearest = glm::clamp(x, node.box.lower, node.box.upper) - x;
+  const float size = node.box.diagonal();
+  return node.power / std::max(glm::dot(nearest, nearest), 1e-4f * size * size);
 }
 
 // Opens the strongest group until all that are left are weak or seen under a small angle.

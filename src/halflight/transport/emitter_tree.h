@@ -15,7 +15,7 @@ struct DirectLightOptions {
   int penumbra_rays = 64;  // where the first ones disagree
   // A group stands for its members when it gives at most this share of the light at the point, or
   // is seen under at most this angle (size / distance).
-  float largest_group_share = 0.02f;
+  float largest_group_share = 0.01f;
   float smallest_angle = 0.01f;
 };
 

@@ -11,7 +11,7 @@ constexpr std::size_t kBatch = 1 << 17;  // pairs judged at once
 constexpr int kSamples = 4;
 constexpr int kBlindSamples = 16;        // on cells above largest_blind_cell
 constexpr int kKeptSamples = 16;
-constexpr int kFinalSamples = 32;        // of a strong link that cannot be refined
+constexpr int kFinalSamples = 16;        // of a strong link that cannot be refined
 // A pair whose whole transfer is below this share of the threshold gets a single sample.
 constexpr float kNegligible = 0.5f;
 // A pair whose kernel alone varies by this multiple of the threshold is refined without a ray.
@@ -68,17 +68,20 @@ class Oracle {
     // A few samples on a large cell that agree may all have missed a shadow, or the light.
     if (is_blind(r) && scale * pilot.deviation <= threshold && scale * pilot.unoccluded > threshold)
       pilot = estimate_transfer(scene_, r, s, kBlindSamples, kPilot);
-    const float error = pilot.deviation + kUnseenVariation * bounds.kernel_variation * pilot.weight;
+    // What n samples missed may still be one part in n + 1 (rule of succession).
+    const float error = std::max(pilot.deviation, pilot.unoccluded / (kBlindSamples + 1)) +
+                        kUnseenVariation * bounds.kernel_variation * pilot.weight;
     if (scale * error > threshold) return {finer, kSamples, {}};
     Verdict verdict = accept(r, s, kKeptSamples, bounds);
-    verdict.link.error = std::max(verdict.link.error, error);
+    verdict.link.error = error;
     verdict.rays += kSamples;
     return verdict;
   }
 
  private:
-  // The weight comes from samples that had no say in the decision: whoever accepts a pair because
-  // its samples agree, and keeps those samples, systematically loses what they missed.
+  // The weight comes from samples that had no say in the decision, now or when the link is tested
+  // again: whoever accepts a pair because its samples agree, and keeps those samples, systematically
+  // loses what they missed.
   Verdict accept(ElementId r, ElementId s, int samples, const TransferBounds& bounds) const {
     const bool cells = !scene_.tree[r].is_cluster() && !scene_.tree[s].is_cluster();
     const TransferEstimate t =
@@ -89,9 +92,7 @@ class Oracle {
     verdict.rays = static_cast<std::uint8_t>(samples);
     verdict.link.source = s;
     verdict.link.weight = std::min(t.weight, bounds.largest_weight);
-    // What n samples missed may still be one part in n + 1 (rule of succession).
-    verdict.link.error = samples == 1 ? bounds.largest_weight
-                                      : std::max(t.deviation, t.unoccluded / static_cast<float>(samples + 1));
+    verdict.link.error = bounds.largest_weight;
     verdict.link.direction = t.direction;
     return verdict;
   }

@@ -123,7 +123,9 @@ TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receive
   const Vec2 shift_r = random_shift(seed), shift_s = random_shift(hash(seed, 3));
   const float choice_r = to_unit_float(hash(seed, 5)), choice_s = to_unit_float(hash(seed, 7));
 
-  int facing = 0;  // pairs whose receiving point faces the source
+  // Points of a receiving cluster count by their cosine, so that what is handed out to its cells
+  // adds up to what arrives.
+  float weights = 0.f, squared_weights = 0.f;
   float sum = 0.f, sum_of_squares = 0.f, unoccluded = 0.f;
   Vec3 direction(0.f);
   for (int k = 0; k < samples; ++k) {
@@ -154,7 +156,9 @@ TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receive
     if (!(squared > 0.f)) continue;
     const Vec3 w = between / std::sqrt(squared);
     const float cosine_r = glm::dot(x.normal, w), cosine_s = -glm::dot(y.normal, w);
-    if (to_cell || cosine_r > 0.f) ++facing;
+    const float weight = to_cell ? 1.f : std::max(0.f, cosine_r);
+    weights += weight;
+    squared_weights += weight * weight;
     if (cosine_r <= 0.f || cosine_s <= 0.f) continue;
 
     float kernel;
@@ -169,20 +173,21 @@ TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receive
     const float value =
         kernel * scene.rays.transmittance(scene.rays.lift(x.position, x.normal),
                                           scene.rays.lift(y.position, y.normal));
-    unoccluded += kernel;
-    sum += value;
-    sum_of_squares += value * value;
-    direction += value * w;
+    unoccluded += weight * kernel;
+    sum += weight * value;
+    sum_of_squares += weight * value * value;
+    direction += weight * value * w;
   }
 
   TransferEstimate estimate;
-  if (facing == 0) return estimate;
-  const auto n = static_cast<float>(facing);
-  estimate.weight = sum / n;
-  estimate.unoccluded = unoccluded / n;
-  if (facing > 1)
-    estimate.deviation =
-        std::sqrt(std::max(0.f, (sum_of_squares - sum * sum / n) / (n - 1.f)));
+  if (!(weights > 0.f)) return estimate;
+  estimate.weight = sum / weights;
+  estimate.unoccluded = unoccluded / weights;
+  const float effective = weights * weights / squared_weights;  // number of samples
+  if (effective > 1.001f) {
+    const float variance = sum_of_squares / weights - estimate.weight * estimate.weight;
+    estimate.deviation = std::sqrt(std::max(0.f, variance * effective / (effective - 1.f)));
+  }
   if (!to_cell && glm::dot(direction, direction) > 0.f)
     estimate.direction = PackedDirection(glm::normalize(direction));
   return estimate;

@@ -1,0 +1,109 @@
+#include "halflight/transport/sampled_links.h"
+
+#include "halflight/base/parallel.h"
+#include "halflight/rays/sampling.h"
+
+namespace halflight {
+namespace {
+
+// Tries to find a cell of a cluster that faces a given direction.
+constexpr std::uint32_t kFacingAttempts = 16;
+
+ElementId hit_leaf(const ElementTree& tree, const RayHit& hit) {
+  const SideId side = side_of(tree.surfaces().of_triangle[hit.triangle], !hit.front);
+  const auto [a, b, c] = tree.geometry().corners(hit.triangle);
+  return tree.find_leaf(side, a + hit.barycentric.x * (b - a) + hit.barycentric.y * (c - a));
+}
+
+// Cosine-distributed rays from points spread over the cell: each hit carries 1 / n of the hemisphere.
+void sample_cell(const ElementTree& tree, const RayScene& rays, ElementId cell, int n,
+                 std::vector<ReceiverLink>& links) {
+  const Vec3 normal = tree.normal(cell);
+  const Frame frame = Frame::from_normal(normal);
+  const Vec2 shift_x = random_shift(hash(cell.value, 23)), shift_w = random_shift(hash(cell.value, 29));
+  for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
+    // Points and directions walk through their sequences with different strides.
+    const Vec3 x = tree.sample(cell, r2_sequence(7 * k, shift_x)).position;
+    const Vec3 w = frame.to_world(cosine_hemisphere(r2_sequence(k, shift_w)));
+    const auto hit = rays.closest_hit(rays.lift(x, normal), w, kInfinity, hash(cell.value, k));
+    if (!hit) continue;
+    Link link;
+    link.source = hit_leaf(tree, *hit);
+    link.weight = 1.f / static_cast<float>(n);
+    if (link.source.valid()) links.push_back({cell, link});
+  }
+}
+
+// A cell of the cluster that faces w, chosen with density area * cosine; invalid when none was found.
+ElementId facing_cell(const ElementTree& tree, ElementId cluster, const Vec3& w, std::uint64_t seed) {
+  for (std::uint32_t attempt = 0; attempt < kFacingAttempts; ++attempt) {
+    float wanted = to_unit_float(hash(seed, attempt, 1));
+    ElementId at = cluster;
+    while (!tree[at].is_leaf()) {
+      float left = wanted * tree[at].area;
+      ElementId chosen = tree[at].children()[0];
+      for (const ElementId child : tree[at].children()) {
+        chosen = child;
+        if (left < tree[child].area) break;
+        left -= tree[child].area;
+      }
+      wanted = std::min(left / tree[chosen].area, 0.999999f);
+      at = chosen;
+    }
+    if (to_unit_float(hash(seed, attempt, 2)) < glm::dot(tree.normal(at), w)) return at;
+  }
+  return {};
+}
+
+// Uniform directions, each seen from a cell that faces it: radiance B / pi over 4 pi / n.
+void sample_cluster(const ElementTree& tree, const RayScene& rays, ElementId cluster, int n,
+                    std::vector<ReceiverLink>& links) {
+  const Vec2 shift = random_shift(hash(cluster.value, 31));
+  for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
+    const Vec2 u = r2_sequence(k, shift);
+    const float z = 1.f - 2.f * u.x, r = std::sqrt(std::max(0.f, 1.f - z * z));
+    const Vec3 w(r * std::cos(2.f * kPi * u.y), r * std::sin(2.f * kPi * u.y), z);
+    const std::uint64_t seed = hash(cluster.value, k);
+    const ElementId cell = facing_cell(tree, cluster, w, seed);
+    if (!cell.valid()) continue;
+    const Vec3 x = tree.sample(cell, random_shift(seed)).position;
+    const auto hit = rays.closest_hit(rays.lift(x, tree.normal(cell)), w, kInfinity, seed);
+    if (!hit) continue;
+    Link link;
+    link.source = hit_leaf(tree, *hit);
+    link.weight = 4.f / static_cast<float>(n);
+    link.direction = PackedDirection(w);
+    if (link.source.valid()) links.push_back({cluster, link});
+  }
+}
+
+}  // namespace
+
+std::vector<ElementId> choose_receivers(const ElementTree& tree, float largest_cluster) {
+  std::vector<ElementId> receivers, open{tree.root()};
+  while (!open.empty()) {
+    const ElementId e = open.back();
+    open.pop_back();
+    const bool small_cluster = tree[e].is_cluster() && tree[e].diameter() <= largest_cluster;
+    if (tree[e].is_leaf() ? !tree[e].is_cluster() : small_cluster)
+      receivers.push_back(e);
+    else
+      for (const ElementId child : tree[e].children()) open.push_back(child);
+  }
+  return receivers;
+}
+
+std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& rays,
+                                       const std::vector<ElementId>& receivers,
+                                       const SampledLinkOptions& options) {
+  return parallel_collect<ReceiverLink>(
+      receivers.size(), 64, [&](std::size_t i, std::vector<ReceiverLink>& links) {
+        const ElementId e = receivers[i];
+        if (tree[e].is_cluster())
+          sample_cluster(tree, rays, e, options.rays_per_cluster, links);
+        else
+          sample_cell(tree, rays, e, options.rays_per_cell, links);
+      });
+}
+
+}  // namespace halflight

@@ -1,0 +1,31 @@
+// Links made by rays: a receiver shoots a few rays and stores what they hit. Kernel and visibility
+// come jointly, rows add up to what does not leave the scene, and there is no singularity; the price
+// is noise, which later averages remove. Such links carry reflected light only: light straight from
+// emitters is read exactly (emitter_tree.h).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "halflight/hierarchy/elements.h"
+#include "halflight/rays/ray_scene.h"
+#include "halflight/transport/link.h"
+
+namespace halflight {
+
+struct SampledLinkOptions {
+  int rays_per_cell = 64;
+  int rays_per_cluster = 128;
+  // Clusters up to this diameter receive as one, with directional irradiance (metres).
+  float largest_cluster = 0.f;
+};
+
+// The cut of the tree that receives: small clusters, and leaf cells outside them.
+std::vector<ElementId> choose_receivers(const ElementTree& tree, float largest_cluster);
+
+// In receiver order, each receiver's links in ray order: deterministic.
+std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& rays,
+                                       const std::vector<ElementId>& receivers,
+                                       const SampledLinkOptions& options);
+
+}  // namespace halflight
