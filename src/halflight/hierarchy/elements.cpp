@@ -81,7 +81,8 @@ ElementTree::ElementTree(const Geometry& geometry, const Surfaces& surfaces,
     elements_[parent].first_child = first;
     elements_[parent].child_count = static_cast<std::uint32_t>(elements_.size()) - first;
   }
-  cluster_count_ = elements_.size();
+  initial_size_ = elements_.size();
+  cluster_total_ = open.size();
   for (std::size_t i = elements_.size(); i-- > 1;) {
     const Element& e = elements_[ElementId(i)];
     elements_[e.parent].box.extend(e.box);

@@ -58,7 +58,8 @@ class ElementTree {
 
   ElementId root() const { return ElementId(0); }
   std::size_t size() const { return elements_.size(); }
-  std::size_t cluster_count() const { return cluster_count_; }  // the first ids are clusters' or sides'
+  std::size_t initial_size() const { return initial_size_; }  // clusters and whole sides come first
+  std::size_t cluster_total() const { return cluster_total_; }
   const Element& operator[](ElementId id) const { return elements_[id]; }
   const Surfaces& surfaces() const { return *surfaces_; }
   const Geometry& geometry() const { return *geometry_; }
@@ -93,7 +94,7 @@ class ElementTree {
   IdVector<SideId, ElementId> side_roots_;
   std::vector<Fragment> fragments_;
   std::vector<Vec2> fragment_corners_;
-  std::size_t cluster_count_ = 0;
+  std::size_t initial_size_ = 0, cluster_total_ = 0;
 };
 
 template <class Visit>

@@ -10,7 +10,8 @@ namespace {
 constexpr std::uint32_t kTextureSamples = 8;
 constexpr std::uint32_t kPointsOfCell = 4;
 constexpr int kSkyRays = 16;  // of each point
-constexpr DirectLightOptions kCellDirectLight{.shadow_rays = 4, .penumbra_rays = 8};
+constexpr DirectLightOptions kCellDirectLight{
+    .shadow_rays = 2, .penumbra_rays = 4, .largest_group_share = 0.1f, .smallest_angle = 0.01f};
 
 Vec2 barycentric_of(const Geometry& g, const SurfacePoint& p) {
   const auto [a, b, c] = g.corners(p.triangle);
@@ -22,6 +23,7 @@ Vec2 barycentric_of(const Geometry& g, const SurfacePoint& p) {
 
 struct GivenLight {
   Rgb mean{0.f};
+  Rgb outer{0.f};  // the part by punctual lights and the sky
   float deviation = 0.f;
 };
 
@@ -36,7 +38,9 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, const Em
     const Vec3 x = state.tree.sample(cell, r2_sequence(k, shift)).position;
     Rgb e = punctual_irradiance(*state.world, x, n) +
             sky_irradiance(*state.world, x, n, kSkyRays, random_shift(hash(cell.value, k)));
-    if (emitters) e += emitters->irradiance(x, n, kCellDirectLight);
+    result.outer += e / static_cast<float>(samples);
+    if (emitters)
+      e += emitters->irradiance(x, n, kCellDirectLight, random_shift(hash(cell.value, k, 13)));
     result.mean += e / static_cast<float>(samples);
     sum += average(e);
     squares += average(e) * average(e);
@@ -77,6 +81,7 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   state.exitance.resize(n);
   state.given_light.resize(n);
   state.given_light_known.resize(n, 0);
+  if (!state.outer_light.empty()) state.outer_light.resize(n);
   state.irradiance.resize(n);
   state.radiosity.resize(n);
   parallel_for(split_cells.size(), 64, [&](std::size_t i) {
@@ -84,6 +89,7 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
     for (const ElementId child : state.tree[parent].children()) {
       evaluate_material(state, child);
       state.given_light[child] = state.given_light[parent];
+      if (!state.outer_light.empty()) state.outer_light[child] = state.outer_light[parent];
       state.irradiance[child] = state.irradiance[parent];
       state.radiosity[child] =
           state.exitance[child] + state.reflectance[child] * state.irradiance[child];
@@ -106,6 +112,7 @@ void update_given_light(SolverState& state, float irradiance_threshold, const Em
       const ElementId e = open[i];
       const GivenLight light = sample_given_light(state, e, emitters);
       state.given_light[e] = light.mean;
+      if (!state.outer_light.empty()) state.outer_light[e] = light.outer;
       state.given_light_known[e] = 1;
       const float error = light.deviation * std::sqrt(state.tree[e].area / scene_area);
       uneven[i] = error > irradiance_threshold &&

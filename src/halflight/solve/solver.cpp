@@ -76,7 +76,7 @@ SolverState make_state(std::shared_ptr<const World> world, const SolveOptions& o
                     surfaces,
                     ElementTree(world->geometry, *surfaces, build_size_grid(boxes), live),
                     options,
-                    {}, {}, {}, {}, false, {}, {}, {}, {}};
+                    {}, {}, {}, {}, {}, false, {}, {}, {}, {}};
   if (!(state.options.feature_size > 0.f))
     state.options.feature_size = world->geometry.bounds.diagonal() / 200.f;
 
@@ -85,6 +85,7 @@ SolverState make_state(std::shared_ptr<const World> world, const SolveOptions& o
   state.exitance.resize(n);
   state.given_light.resize(n, Rgb(0.f));
   state.given_light_known.resize(n, 0);
+  if (has_outer_light(*world)) state.outer_light.resize(n, Rgb(0.f));
   state.irradiance.resize(n, Rgb(0.f));
   state.radiosity.resize(n, Rgb(0.f));
   parallel_for(n, 256, [&](std::size_t i) {
@@ -141,7 +142,8 @@ EnergyBalance energy_balance(const SolverState& state) {
     const ElementId e(i);
     if (state.tree[e].is_cluster() || !state.tree[e].is_leaf()) continue;
     const float area = state.tree[e].area;
-    balance.emitted += area * (state.exitance[e] + state.given_light[e]);
+    balance.emitted += area * state.exitance[e];
+    if (!state.outer_light.empty()) balance.emitted += area * state.outer_light[e];
     balance.absorbed += area * (Rgb(1.f) - state.reflectance[e]) * state.irradiance[e];
   }
   balance.escaped = balance.emitted - balance.absorbed;

@@ -50,6 +50,7 @@ struct SolverState {
   // sampled links by emitting surfaces too.
   IdVector<ElementId, Rgb> given_light;
   IdVector<ElementId, std::uint8_t> given_light_known;
+  IdVector<ElementId, Rgb> outer_light;   // its part by punctual lights and the sky; empty: none
   bool emission_is_given = false;         // links carry reflected light only
   IdVector<ElementId, Rgb> irradiance;    // E of cells, from all links above and at them
   IdVector<ElementId, Rgb> radiosity;     // B = rho E + pi L, mean over the element's area

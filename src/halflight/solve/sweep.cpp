@@ -13,8 +13,8 @@ struct ClusterNumbers {
   std::vector<std::uint32_t> of_element;
   std::size_t count = 0;
 
-  explicit ClusterNumbers(const ElementTree& tree) : of_element(tree.cluster_count()) {
-    for (std::size_t i = 0; i < tree.cluster_count(); ++i)
+  explicit ClusterNumbers(const ElementTree& tree) : of_element(tree.initial_size()) {
+    for (std::size_t i = 0; i < tree.initial_size(); ++i)
       if (tree[ElementId(i)].is_cluster()) of_element[i] = static_cast<std::uint32_t>(count++);
   }
   std::uint32_t operator[](ElementId e) const { return of_element[e.value]; }
@@ -53,7 +53,7 @@ void gather(SolverState& state, const ClusterNumbers& number,
 void push(SolverState& state, const ClusterNumbers& number,
           std::vector<DirectionalIrradiance>& arriving) {
   const ElementTree& tree = state.tree;
-  const std::size_t top = tree.cluster_count();
+  const std::size_t top = tree.initial_size();
   for (std::size_t i = 1; i < top; ++i) {
     const ElementId e(i);
     if (tree[e].is_cluster()) arriving[number[e]] += arriving[number[tree[e].parent]];

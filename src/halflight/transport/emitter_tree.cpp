@@ -153,7 +153,7 @@ std::vector<EmitterTree::CutNode> EmitterTree::choose_cut(const Vec3& x, const V
 }
 
 Rgb EmitterTree::from_triangle(const Emitter& e, const Vec3& x, const Vec3& n, int rays,
-                               int more_rays) const {
+                               int more_rays, Vec2 shift) const {
   const Geometry& g = world_->geometry;
   const auto corner = g.corners(e.triangle);
   const Vec3 normal = normal_of(e);
@@ -166,7 +166,7 @@ Rgb EmitterTree::from_triangle(const Emitter& e, const Vec3& x, const Vec3& n, i
   int taken = 0;
   const auto shoot = [&](int until) {
     for (; taken < until; ++taken) {
-      const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(taken)));
+      const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(taken), shift));
       const Vec3 y = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
       const Vec3 between = y - x;
       const float squared = std::max(glm::dot(between, between), 1e-20f);
@@ -186,19 +186,20 @@ Rgb EmitterTree::from_triangle(const Emitter& e, const Vec3& x, const Vec3& n, i
   return kernel_sum > 0.f ? kPi * form_factor * seen_radiance / kernel_sum : Rgb(0.f);
 }
 
-Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int rays) const {
+Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int rays,
+                            Vec2 shift) const {
   const Geometry& g = world_->geometry;
   const Vec3 from = world_->rays.lift(x, n);
   const float before = node.first == 0 ? 0.f : cumulative_power_[node.first - 1];
   const auto begin = cumulative_power_.begin() + node.first;
   Rgb sum(0.f);
   for (int k = 0; k < rays; ++k) {
-    const float stratum = (static_cast<float>(k) + 0.5f) / static_cast<float>(rays);
+    const float stratum = (static_cast<float>(k) + shift.x) / static_cast<float>(rays);
     const auto found = std::upper_bound(begin, begin + node.count, before + stratum * node.power);
     const auto offset = std::min<std::ptrdiff_t>(found - begin, node.count - 1);
     const Emitter& e = emitters_[node.first + static_cast<std::uint32_t>(offset)];
     const auto corner = g.corners(e.triangle);
-    const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(k)));
+    const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(k), shift));
     const Vec3 y = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
     const Vec3 normal = normal_of(e), between = y - x;
     const float squared = glm::dot(between, between);
@@ -212,7 +213,8 @@ Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int 
   return sum / static_cast<float>(rays);
 }
 
-Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options) const {
+Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options,
+                            Vec2 shift) const {
   if (empty()) return Rgb(0.f);
   const std::vector<CutNode> cut = choose_cut(x, n, options);
   float expected = 0.f;
@@ -227,9 +229,9 @@ Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptio
     };
     if (node.right == 0)
       sum += from_triangle(emitters_[node.first], x, n, rays_for(options.shadow_rays),
-                           rays_for(options.penumbra_rays));
+                           rays_for(options.penumbra_rays), shift);
     else
-      sum += from_group(node, x, n, rays_for(options.penumbra_rays));
+      sum += from_group(node, x, n, rays_for(options.penumbra_rays), shift);
   }
   return sum;
 }

@@ -24,9 +24,11 @@ class EmitterTree {
   explicit EmitterTree(const World& world);
   bool empty() const { return emitters_.empty(); }
 
-  // Irradiance at x with unit normal n from all emitting surfaces, shadows by exact rays. The sample
-  // pattern is the same everywhere: no noise, penumbrae in as many steps as there are rays.
-  Rgb irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options) const;
+  // Irradiance at x with unit normal n from all emitting surfaces, shadows by exact rays. With the
+  // same shift everywhere there is no noise, and penumbrae come in as many steps as there are rays;
+  // different shifts make estimates that average out.
+  Rgb irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options,
+                 Vec2 shift = Vec2(0.5f)) const;
 
  private:
   struct Emitter {
@@ -54,8 +56,9 @@ class EmitterTree {
   float expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const;
   std::vector<CutNode> choose_cut(const Vec3& x, const Vec3& n, const DirectLightOptions&) const;
   Vec3 normal_of(const Emitter& e) const;
-  Rgb from_triangle(const Emitter& e, const Vec3& x, const Vec3& n, int rays, int more_rays) const;
-  Rgb from_group(const Node& node, const Vec3& x, const Vec3& n, int rays) const;
+  Rgb from_triangle(const Emitter& e, const Vec3& x, const Vec3& n, int rays, int more_rays,
+                    Vec2 shift) const;
+  Rgb from_group(const Node& node, const Vec3& x, const Vec3& n, int rays, Vec2 shift) const;
 
   const World* world_;
   std::vector<Emitter> emitters_;

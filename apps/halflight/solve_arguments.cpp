@@ -1,0 +1,95 @@
+#include "solve_arguments.h"
+
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "halflight/base/quantities.h"
+#include "terminal_progress.h"
+
+namespace halflight::app {
+
+void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
+  command
+      .add_option("--feature-size", arguments.feature_size,
+                  "smallest shadow kept exact, e.g. 5cm [scene diagonal / 200]")
+      ->type_name("LEN");
+  command.add_option("--error", arguments.error, "relative RMS error of irradiance to aim at")
+      ->type_name("PCT")
+      ->capture_default_str();
+  command.add_option("--time", arguments.time, "stop refining at this wall time, e.g. 10s")
+      ->type_name("DUR");
+  const std::map<std::string, LinkMaker> makers{{"refined", LinkMaker::refined},
+                                                {"sampled", LinkMaker::sampled}};
+  command
+      .add_option("--links", arguments.links,
+                  "refined: by the error oracle alone; sampled: by rays on the elements it shaped")
+      ->transform(CLI::CheckedTransformer(makers))
+      ->default_str("sampled");
+  command.add_option("--progress", arguments.progress, "auto, json or none")
+      ->check(CLI::IsMember({"auto", "json", "none"}))
+      ->capture_default_str();
+  command.add_option("--threads", arguments.threads, "0: all cores")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+Result<SolveOptions> resolve(const SolveArguments& arguments) {
+  SolveOptions options;
+  options.links = arguments.links;
+  if (!arguments.feature_size.empty()) {
+    const Result<double> length = parse_length(arguments.feature_size);
+    if (!length) return tl::unexpected(length.error());
+    options.feature_size = static_cast<float>(*length);
+    if (!(options.feature_size > 0.f))
+      return input_error("--feature-size must be above zero", {}, "try 1mm for very fine shadows");
+  }
+  const Result<double> error = parse_percent(arguments.error);
+  if (!error) return tl::unexpected(error.error());
+  if (!(*error > 0.0)) return input_error("--error must be above zero", {}, "try 1%");
+  options.error = static_cast<float>(*error);
+  if (!arguments.time.empty())
+    if (const Result<double> time = parse_duration(arguments.time); !time)
+      return tl::unexpected(time.error());
+  return options;
+}
+
+Progress::Listener progress_listener(const SolveArguments& arguments) {
+  if (arguments.progress == "none") return {};
+  if (arguments.progress == "auto") return terminal_progress();
+  return [](std::string_view phase, double share) {
+    std::fputs(fmt::format("{{\"phase\":\"{}\",\"share\":{:.4f}}}\n", phase, share).c_str(), stderr);
+  };
+}
+
+struct Deadline::Timer {
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool finished = false;
+  std::thread thread;
+};
+
+Deadline::Deadline(Progress& progress, const SolveArguments& arguments) {
+  if (arguments.time.empty()) return;
+  const std::chrono::duration<double> time(*parse_duration(arguments.time));
+  timer_ = std::make_unique<Timer>();
+  timer_->thread = std::thread([&progress, time, timer = timer_.get()] {
+    std::unique_lock lock(timer->mutex);
+    if (!timer->changed.wait_for(lock, time, [&] { return timer->finished; })) progress.cancel();
+  });
+}
+
+Deadline::~Deadline() {
+  if (!timer_) return;
+  {
+    const std::lock_guard lock(timer_->mutex);
+    timer_->finished = true;
+  }
+  timer_->changed.notify_all();
+  timer_->thread.join();
+}
+
+}  // namespace halflight::app

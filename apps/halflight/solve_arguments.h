@@ -1,0 +1,41 @@
+// The arguments of everything that solves.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <CLI/App.hpp>
+
+#include "halflight/base/progress.h"
+#include "halflight/base/result.h"
+#include "halflight/solve/solver.h"
+
+namespace halflight::app {
+
+struct SolveArguments {
+  std::string feature_size;  // empty: scene diagonal / 200
+  std::string error = "5%";
+  std::string time;          // empty: no deadline
+  std::string progress = "auto";
+  LinkMaker links = LinkMaker::sampled;
+  int threads = 0;
+};
+
+void add_solve_arguments(CLI::App& command, SolveArguments& arguments);
+Result<SolveOptions> resolve(const SolveArguments& arguments);
+Progress::Listener progress_listener(const SolveArguments& arguments);
+
+// Cancels the progress when --time has passed since construction.
+class Deadline {
+ public:
+  Deadline(Progress& progress, const SolveArguments& arguments);
+  ~Deadline();
+  Deadline(const Deadline&) = delete;
+  Deadline& operator=(const Deadline&) = delete;
+
+ private:
+  struct Timer;
+  std::unique_ptr<Timer> timer_;
+};
+
+}  // namespace halflight::app

@@ -1,0 +1,14 @@
+// Quantities as people write them on the command line.
+#pragma once
+
+#include <string_view>
+
+#include "halflight/base/result.h"
+
+namespace halflight {
+
+Result<double> parse_length(std::string_view text);    // "0.05", "5cm", "2in": metres
+Result<double> parse_duration(std::string_view text);  // "10", "10s", "2m", "500ms": seconds
+Result<double> parse_percent(std::string_view text);   // "5%", "5": 0.05
+
+}  // namespace halflight

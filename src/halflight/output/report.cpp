@@ -1,0 +1,115 @@
+#include "halflight/output/report.h"
+
+#include <ctime>
+
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "halflight/base/parallel.h"
+
+namespace halflight {
+namespace {
+
+using nlohmann::json;
+
+json rgb(const Rgb& c) { return {c.r, c.g, c.b}; }
+
+json input(const SolverState& state) {
+  const Geometry& g = state.world->geometry;
+  std::size_t emitters = 0;
+  for (const MaterialId m : g.materials) emitters += state.world->scene.materials[m].emits();
+  return {{"triangles", g.triangles.size()},
+          {"degenerate_triangles", g.degenerate_triangles},
+          {"surfaces", state.surfaces->surfaces.size()},
+          {"emitting_triangles", emitters},
+          {"punctual_lights", g.lights.size()},
+          {"bounds", {rgb(g.bounds.lower), rgb(g.bounds.upper)}}};
+}
+
+json settings(const SolverState& state) {
+  return {{"feature_size", state.options.feature_size},
+          {"error", state.options.error},
+          {"links", state.options.links == LinkMaker::refined ? "refined" : "sampled"},
+          {"passes", state.options.passes},
+          {"sky", rgb(state.world->scene.sky)},
+          {"threads", thread_count()},
+          {"instruction_set", RayScene::instruction_set()}};
+}
+
+json history(const SolverState& state) {
+  json passes = json::array();
+  for (const PassRecord& p : state.history)
+    passes.push_back({{"irradiance_threshold", p.irradiance_threshold},
+                      {"pairs", p.pairs},
+                      {"links", p.links},
+                      {"elements", p.elements},
+                      {"rays", p.rays},
+                      {"sweeps", p.sweeps},
+                      {"refine_seconds", p.refine_seconds},
+                      {"sweep_seconds", p.sweep_seconds}});
+  return passes;
+}
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+std::size_t peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
+}
+
+}  // namespace
+
+void Report::end_phase(const std::string& name, Clock::time_point start) {
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  for (auto& [known, sum] : phases_)
+    if (known == name) {
+      sum += seconds;
+      return;
+    }
+  phases_.emplace_back(name, seconds);
+}
+
+void Report::set_lit_mesh(const LitMesh& mesh, float exposure) {
+  has_mesh_ = true;
+  mesh_vertices_ = mesh.vertices;
+  mesh_triangles_ = mesh.triangles;
+  mesh_readings_ = mesh.readings;
+  exposure_ = exposure;
+}
+
+std::string Report::json(const SolverState& state) const {
+  nlohmann::json report;
+  report["input"] = input(state);
+  report["settings"] = settings(state);
+  for (const auto& [name, seconds] : phases_) report["phases"][name] = seconds;
+  report["wall_seconds"] = std::chrono::duration<double>(Clock::now() - start_).count();
+  report["cpu_seconds"] = cpu_seconds();
+  report["peak_rss_bytes"] = peak_rss_bytes();
+  std::uint64_t rays = 0;
+  int sweeps = 0;
+  for (const PassRecord& p : state.history) {
+    rays += p.rays;
+    sweeps += p.sweeps;
+  }
+  report["rays"] = {{"exact", rays}, {"multi_resolution", 0}};
+  report["clusters"] = state.tree.cluster_total();
+  report["elements"] = state.tree.size();
+  report["links"] = state.links.size();
+  report["sweeps"] = sweeps;
+  const EnergyBalance energy = energy_balance(state);
+  report["energy"] = {{"emitted", rgb(energy.emitted)},
+                      {"absorbed", rgb(energy.absorbed)},
+                      {"escaped", rgb(energy.escaped)}};
+  report["mean_irradiance"] = mean_irradiance(state);
+  report["history"] = history(state);
+  report["warnings"] = state.world->scene.warnings;
+  if (has_mesh_)
+    report["lit_mesh"] = {{"vertices", mesh_vertices_},
+                          {"triangles", mesh_triangles_},
+                          {"readings", mesh_readings_},
+                          {"exposure", exposure_}};
+  return report.dump(2) + "\n";
+}
+
+}  // namespace halflight

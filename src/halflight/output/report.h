@@ -1,0 +1,33 @@
+// The JSON report of a solve.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "halflight/output/lit_mesh.h"
+#include "halflight/solve/solver.h"
+
+namespace halflight {
+
+class Report {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  Report() : start_(Clock::now()) {}
+  // Records the seconds since `start` under a name; a name given twice adds up.
+  void end_phase(const std::string& name, Clock::time_point start);
+  void set_lit_mesh(const LitMesh& mesh, float exposure);
+
+  std::string json(const SolverState& state) const;
+
+ private:
+  Clock::time_point start_;
+  std::vector<std::pair<std::string, double>> phases_;
+  bool has_mesh_ = false;
+  std::size_t mesh_vertices_ = 0, mesh_triangles_ = 0, mesh_readings_ = 0;
+  float exposure_ = 0.f;
+};
+
+}  // namespace halflight
