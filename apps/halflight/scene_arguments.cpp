@@ -7,9 +7,25 @@
 namespace halflight::app {
 namespace {
 
-const std::map<std::string, double> kMetresPerUnit = {
-    {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
-const std::map<std::string, UpAxis> kUpAxes = {{"y", UpAxis::y}, {"z", UpAxis::z}};
+using Units = std::map<std::string, double>;
+const Units& metres_per_unit() {
+  static const Units units = {
+      {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
+  return units;
+}
+
+void set_unit(const std::string& name, LoadOptions& load) {
+  const auto unit = metres_per_unit().find(name);
+  if (unit == metres_per_unit().end())
+    throw CLI::ValidationError("--unit", "'" + name + "' is none of m, cm, mm, in, ft");
+  load.metres_per_unit = unit->second;
+}
+
+void set_up_axis(const std::string& name, LoadOptions& load) {
+  if (name != "y" && name != "z")
+    throw CLI::ValidationError("--up", "'" + name + "' is neither y nor z");
+  load.up = name == "z" ? UpAxis::z : UpAxis::y;
+}
 
 std::string check_radiance(const std::string& text) {
   double value = 0.0;
@@ -22,12 +38,17 @@ std::string check_radiance(const std::string& text) {
 void add_scene_arguments(CLI::App& command, SceneArguments& arguments,
                          const std::string& positional) {
   command.add_option(positional, arguments.path, "scene file: .glb, .gltf or .obj")->required();
-  command.add_option("--unit", arguments.load.metres_per_unit, "unit of the scene's lengths")
-      ->transform(CLI::CheckedTransformer(kMetresPerUnit))
+  LoadOptions& load = arguments.load;
+  command
+      .add_option_function<std::string>(
+          "--unit", [&load](const std::string& name) { set_unit(name, load); },
+          "unit of the scene's lengths")
       ->type_name("m|cm|mm|in|ft")
       ->default_str("m");
-  command.add_option("--up", arguments.load.up, "axis of the scene that points up")
-      ->transform(CLI::CheckedTransformer(kUpAxes))
+  command
+      .add_option_function<std::string>(
+          "--up", [&load](const std::string& name) { set_up_axis(name, load); },
+          "axis of the scene that points up")
       ->type_name("y|z")
       ->default_str("y");
   command.add_option("--sky", arguments.sky, "constant radiance of the sky, W/m2/sr")

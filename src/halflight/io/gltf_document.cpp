@@ -45,7 +45,7 @@ void GltfDocument::split_glb() {
   if (word_at(file_, 0) != kGlbMagic) fail("it does not begin with 'glTF'");
   if (word_at(file_, 4) != 2) fail("its version is not 2");
   if (word_at(file_, 8) > file_.size()) fail("it is shorter than its header says");
-  const ByteSpan all(file_);
+  const ByteSpan all = ByteSpan(file_).first(word_at(file_, 8));
   ByteSpan json;
   for (std::size_t at = 12, chunk = 0; at < all.size(); ++chunk) {
     if (all.size() - at < 8) fail("it ends inside the header of a chunk");

@@ -182,7 +182,7 @@ TextureId ObjMaterials::texture(const std::filesystem::path& path, Wrap wrap, Pi
   if (first_use) {
     pictures_.push_back({});
     pictures_.back().where = file;
-    Result<Bytes> bytes = read_file(path);
+    Result<Bytes> bytes = read_file(file);
     if (bytes) pictures_.back().owned = std::move(*bytes);
     pictures_.back().bytes = pictures_.back().owned;
     if (!bytes) pictures_.back().missing = bytes.error().line();
