@@ -30,8 +30,7 @@ void expect_exact_cover(const std::vector<Vec3>& corners) {
   const Vec3 whole = newell(corners);
   float area = 0.f;
   for (const auto& [a, b, c] : triangles) {
-    const Vec3 normal =
-        0.5f * glm::cross(corners[b] - corners[a], corners[c] - corners[a]);
+    const Vec3 normal = 0.5f * glm::cross(corners[b] - corners[a], corners[c] - corners[a]);
     EXPECT_GE(glm::dot(normal, whole), 0.f);
     area += glm::length(normal);
   }
@@ -54,8 +53,16 @@ TEST(Polygon, CornersOnStraightEdgesStayConnected) {
 
 TEST(Polygon, AHoleOnABridgeStaysOpen) {
   // A 4 x 4 square with a 2 x 2 hole, joined by a slit that is walked in both directions.
-  expect_exact_cover({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},
-                      {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}});
+  expect_exact_cover({{0, 0, 0},
+                      {4, 0, 0},
+                      {4, 4, 0},
+                      {0, 4, 0},
+                      {0, 0, 0},
+                      {1, 1, 0},
+                      {1, 3, 0},
+                      {3, 3, 0},
+                      {3, 1, 0},
+                      {1, 1, 0}});
 }
 
 TEST(Polygon, RandomStarsInAnyPlaneAreCoveredOnce) {

@@ -12,6 +12,12 @@ namespace {
 // glTF's "mode" of a primitive.
 enum Mode : std::size_t { kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6 };
 
+std::size_t mode_of(const JsonCursor& primitive) {
+  const std::size_t mode = primitive.count_or("mode", kTriangles);
+  if (mode > kTriangleFan) primitive.at("mode").fail("this is not a primitive mode");
+  return mode;
+}
+
 std::size_t triangle_count(std::size_t mode, std::size_t corners) {
   if (mode == kTriangles) return corners / 3;
   return corners < 3 ? 0 : corners - 2;
@@ -41,14 +47,28 @@ MeshId GltfMeshes::read(const JsonCursor& index) {
   Mesh mesh;
   mesh.name = json.string_or("name", "");
   const JsonCursor primitives = json.at("primitives");
+  for (std::size_t i = 0; i < primitives.size(); ++i) claim(primitives[i]);
   for (std::size_t i = 0; i < primitives.size(); ++i) read_primitive(primitives[i], mesh);
   return known->second = scene_.meshes.push_back(std::move(mesh));
 }
 
+std::size_t GltfMeshes::corner_count(const JsonCursor& json) const {
+  const auto indices = json.find("indices");
+  const JsonCursor accessor = indices ? *indices : json.at("attributes").at("POSITION");
+  return accessor_type(document_.element("accessors", accessor)).count;
+}
+
+// Takes what the primitive says it holds from the budgets. Draco data speak for themselves later.
+void GltfMeshes::claim(const JsonCursor& json) {
+  const std::size_t mode = mode_of(json);
+  if (mode < kTriangles || json.extension("KHR_draco_mesh_compression")) return;
+  const JsonCursor position = json.at("attributes").at("POSITION");
+  vertices_.take(accessor_type(document_.element("accessors", position)).count, position.path());
+  triangles_.take(triangle_count(mode, corner_count(json)), json.path());
+}
+
 void GltfMeshes::read_primitive(const JsonCursor& json, Mesh& mesh) {
-  const std::size_t mode = json.count_or("mode", kTriangles);
-  if (mode > kTriangleFan) json.at("mode").fail("this is not a primitive mode");
-  if (mode < kTriangles) {
+  if (mode_of(json) < kTriangles) {
     warnings_.add(json.path() + ": points and lines are ignored");
     return;
   }
@@ -72,8 +92,6 @@ void GltfMeshes::read_primitive(const JsonCursor& json, Mesh& mesh) {
 void GltfMeshes::read_attributes(const JsonCursor& json, Primitive& p) {
   const JsonCursor attributes = json.at("attributes");
   const JsonCursor position = attributes.at("POSITION");
-  const AccessorType type = accessor_type(document_.element("accessors", position));
-  vertices_.take(type.count, position.path());
   p.positions = read_vec3(document_, position);
   if (const auto normal = attributes.find("NORMAL")) {
     p.normals = read_vec3(document_, *normal);
@@ -88,11 +106,8 @@ void GltfMeshes::read_attributes(const JsonCursor& json, Primitive& p) {
 }
 
 void GltfMeshes::read_corners(const JsonCursor& json, Primitive& p) {
-  const std::size_t mode = json.count_or("mode", kTriangles);
+  const std::size_t mode = mode_of(json), corners = corner_count(json);
   const auto indices = json.find("indices");
-  const std::size_t corners =
-      indices ? accessor_type(document_.element("accessors", *indices)).count : p.positions.size();
-  triangles_.take(triangle_count(mode, corners), json.path());
   std::vector<std::uint32_t> vertex;
   if (indices) {
     vertex = read_indices(document_, *indices);

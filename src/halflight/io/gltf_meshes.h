@@ -18,6 +18,8 @@ class GltfMeshes {
   MeshId read(const JsonCursor& index);
 
  private:
+  std::size_t corner_count(const JsonCursor& json) const;
+  void claim(const JsonCursor& json);
   void read_primitive(const JsonCursor& json, Mesh& mesh);
   void read_attributes(const JsonCursor& json, Primitive& primitive);
   void read_corners(const JsonCursor& json, Primitive& primitive);

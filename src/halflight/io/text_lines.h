@@ -1,6 +1,7 @@
 // Line-based text formats: lines with their numbers, and the words and numbers of a line.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -76,12 +77,12 @@ class TextLines {
       while (at_ != end_ && *at_ != '\n' && *at_ != '\r') ++at_;
       char* const last = at_;
       if (at_ != end_) at_ += at_[0] == '\r' && at_ + 1 != end_ && at_[1] == '\n' ? 2 : 1;
-      const bool joins = last != first && last[-1] == '\\' && at_ != end_;
-      if (!joins) {
+      const bool joins = last != first && last[-1] == '\\';
+      if (joins) std::fill(last - 1, at_, ' ');
+      if (!joins || at_ == end_) {
         line = std::string_view(first, static_cast<std::size_t>(last - first));
         return true;
       }
-      for (char* c = last - 1; c != at_; ++c) *c = ' ';
       ++joined_;
     }
   }
