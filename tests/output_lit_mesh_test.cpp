@@ -284,6 +284,30 @@ TEST(LitMesh, LightDoesNotLeakUnderAThinWall) {
   }
 }
 
+TEST(LitMesh, AShortWallInsideAFloorPartsTheLightAtItsFoot) {
+  Scene s;
+  std::vector<Quad> floor;
+  for (int x = 0; x < 2; ++x)
+    for (int z = 0; z < 3; ++z) {
+      Quad q = floor_quad(1.f);
+      for (Vec3& v : q) v += Vec3(x, 0, z);
+      floor.push_back(q);
+    }
+  add_primitive(s, floor, true);
+  add_primitive(s, {Quad{Vec3(1, 0, 1), {1, 0, 2}, {1, 1, 2}, {1, 1, 1}}});
+  const LitMesh lit =
+      build_lit_mesh(s, flatten(s), reader([](const ReadingPoint& p) {
+                       return Rgb(p.position.x + 1e-3f * p.normal.x < 1.f ? 1.f : 0.f);
+                     }),
+                     options_for(0.2f));
+  std::set<float> at_the_foot;
+  for (const LitPrimitive& p : lit.primitives)
+    for (std::size_t i = 0; i < p.positions.size(); ++i)
+      if (p.instance == InstanceId(0) && p.positions[i] == Vec3(1, 0, 1.5f))
+        at_the_foot.insert(p.irradiance[i].x);
+  EXPECT_EQ(at_the_foot, (std::set<float>{0.f, 1.f}));
+}
+
 TEST(LitMesh, AWallWoundAwayFromItsRoomIsShownFromTheRoom) {
   Scene s;
   Quad down = floor_quad(1.f);
