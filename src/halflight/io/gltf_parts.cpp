@@ -27,11 +27,12 @@ int wrap_code(Wrap w) {
   return kRepeat;
 }
 
-// KHR_texture_transform: u' = sx cos(r) u - sy sin(r) v + ox, v' = sx sin(r) u + sy cos(r) v + oy.
+// KHR_texture_transform, counter-clockwise as seen with v downwards:
+// u' = sx cos(r) u + sy sin(r) v + ox, v' = -sx sin(r) u + sy cos(r) v + oy.
 json transform_json(const std::array<float, 6>& m) {
-  const double rotation = std::atan2(m[3], m[0]);
+  const double rotation = std::atan2(-m[3], m[0]);
   const double scale_u = std::hypot(m[0], m[3]);
-  const double scale_v = m[4] * std::cos(rotation) - m[1] * std::sin(rotation);
+  const double scale_v = m[4] * std::cos(rotation) + m[1] * std::sin(rotation);
   json j{{"offset", {m[2], m[5]}}, {"scale", {scale_u, scale_v}}};
   if (rotation != 0.0) j["rotation"] = rotation;
   return j;
@@ -97,7 +98,7 @@ int TextureWriter::merged(TextureId color, TextureId alpha) {
     for (int column = 0; column < both.width; ++column) {
       std::array<std::uint8_t, 4> rgba = kWhite;
       if (c) rgba = texel(c->texels, c->width, c->height, column, row, both.width, both.height);
-      rgba[3] = texel(a.texels, a.width, a.height, column, row, both.width, both.height)[0];
+      rgba[3] = texel(a.texels, a.width, a.height, column, row, both.width, both.height)[3];
       both.texels.push_back(rgba);
     }
   entry->second = add(both, encode_png(both.width, both.height, both.texels), "image/png");

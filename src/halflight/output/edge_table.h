@@ -13,14 +13,17 @@ namespace halflight {
 using EdgeId = Id<struct EdgeTag>;
 using SiteEdgeId = Id<struct SiteEdgeTag>;
 
+inline constexpr std::uint32_t kNoUse = ~0u;
+
 // A pair of points. It is split for all its triangles or for none, so no crack can open.
 struct Edge {
   std::array<PointId, 2> ends;
   PointId middle;  // valid once split
   float length = 0.f;
-  float longest_wanted = 0.f;  // split unconditionally when longer, if there is any light
-  float error = 0.f;           // of linear interpolation, relative
-  std::uint8_t triangles = 0;  // input surfaces that share it (counts to 3)
+  float longest_wanted = 0.f;        // split unconditionally when longer, if there is any light
+  float error = 0.f;                 // of linear interpolation, relative
+  std::uint32_t first_use = kNoUse;  // list of the sheet sides that run along it
+  std::uint8_t triangles = 0;        // input surfaces that share it (counts to 3)
   bool lit = false;
   bool split = false;
 };
@@ -40,6 +43,8 @@ struct FineSheet {
   bool primary = true;          // false: the back of a triangle whose front is shown as well
   std::array<EdgeId, 3> edges;  // side k from corner k to k + 1; invalid when too short to split
   std::array<SiteEdgeId, 3> site_edges;
+  std::array<std::uint32_t, 3> next_use{kNoUse, kNoUse, kNoUse};  // side k of sheet i is 3 i + k
+  bool affected = false;                                          // has a side that is being split
 };
 
 class EdgeTable {
@@ -49,7 +54,8 @@ class EdgeTable {
   IdVector<EdgeId, Edge> edges;
   IdVector<SiteEdgeId, SiteEdge> site_edges;
 
-  // Enters the sides of new sheets that are longer than `finest`.
+  // Enters the sides of new sheets that are longer than `finest`. New edges go to the end of
+  // `edges`.
   void enter(std::span<FineSheet> sheets);
   // Adds a site in the middle of every side of the new sheets that has none, with its light, and
   // rates the edges. Returns the number of readings.

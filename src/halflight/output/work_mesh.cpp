@@ -131,12 +131,13 @@ ReadingPoint reading_point(const Geometry& g, const WorkMesh& mesh, const Corner
 
 }  // namespace
 
-LitVertexId WorkMesh::find_or_add_vertex(SiteId site_id, InstanceId instance,
+LitVertexId WorkMesh::find_or_add_vertex(SiteId site_id, InstanceId instance, bool back,
                                          const std::array<Vec2, 2>& uvs) {
   Site& site = sites[site_id];
   for (LitVertexId v = site.first_vertex; v.valid(); v = vertices[v].next)
-    if (vertices[v].instance == instance && vertices[v].uvs == uvs) return v;
-  site.first_vertex = vertices.push_back({site_id, instance, uvs, site.first_vertex});
+    if (vertices[v].instance == instance && vertices[v].back == back && vertices[v].uvs == uvs)
+      return v;
+  site.first_vertex = vertices.push_back({site_id, instance, back, uvs, site.first_vertex});
   return site.first_vertex;
 }
 
@@ -171,8 +172,8 @@ WorkMesh make_work_mesh(const Geometry& g, WeldedPoints points, const SharedEdge
     SiteShape& shape = shapes[site.value];
     shape.inwards += c.angle * c.inwards;
     shape.on_border |= !continues_at[i / 3][i % 3] || !continues_at[i / 3][(i + 2) % 3];
-    sheet.corners[i % 3] =
-        mesh.find_or_add_vertex(site, g.instances[sheet.source], {g.uvs[0][v], g.uvs[1][v]});
+    sheet.corners[i % 3] = mesh.find_or_add_vertex(site, g.instances[sheet.source], sheet.back,
+                                                   {g.uvs[0][v], g.uvs[1][v]});
   }
   for (std::uint32_t i = 0; i < corners.all.size(); ++i) {
     SiteShape& shape = shapes[site_of[i].value];

@@ -1,7 +1,7 @@
 // The lit mesh while it is being built. Three things meet at a corner of a triangle:
 //   point    a place in space, the same for everything that touches it
 //   site     a point on one smooth surface: light is read once per site
-//   vertex   a site with the texture coordinates of one primitive instance
+//   vertex   a site with the texture coordinates of one side of a primitive instance
 #pragma once
 
 #include <array>
@@ -27,6 +27,7 @@ struct Site {
 struct LitVertex {
   SiteId site;
   InstanceId instance;
+  bool back = false;
   std::array<Vec2, 2> uvs;
   LitVertexId next;  // of the same site
 };
@@ -47,7 +48,8 @@ struct WorkMesh {
   SiteId site(LitVertexId v) const { return vertices[v].site; }
   PointId point(LitVertexId v) const { return sites[vertices[v].site].point; }
   const Vec3& position(LitVertexId v) const { return points[point(v)]; }
-  LitVertexId find_or_add_vertex(SiteId site, InstanceId instance, const std::array<Vec2, 2>& uvs);
+  LitVertexId find_or_add_vertex(SiteId site, InstanceId instance, bool back,
+                                 const std::array<Vec2, 2>& uvs);
 };
 
 // Builds points, sites, vertices and sheets from the input's triangles, and reads the light at
