@@ -308,6 +308,26 @@ TEST(LitMesh, AShortWallInsideAFloorPartsTheLightAtItsFoot) {
   EXPECT_EQ(at_the_foot, (std::set<float>{0.f, 1.f}));
 }
 
+TEST(LitMesh, AWallThatRunsOnBehindTheCeilingHasNoDarkRim) {
+  Scene s;
+  add_primitive(s, {Quad{Vec3(0, 0, 0), {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}});
+  const float ceiling = 0.7f;
+  const LitMesh lit =
+      build_lit_mesh(s, flatten(s), reader([&](const ReadingPoint& p) {
+                       return Rgb(p.normal.z > 0.f && p.position.y < ceiling ? 1.f : 0.f);
+                     }),
+                     options_for(0.2f));
+  std::size_t below = 0;
+  for (const auto& t : lit.primitives[0].triangles) {
+    float lowest = kInfinity;
+    for (const std::uint32_t v : t) lowest = std::min(lowest, lit.primitives[0].positions[v].y);
+    if (lowest >= ceiling) continue;
+    ++below;
+    for (const std::uint32_t v : t) EXPECT_EQ(lit.primitives[0].irradiance[v].x, 1.f);
+  }
+  EXPECT_GT(below, 20u);
+}
+
 TEST(LitMesh, AWallWoundAwayFromItsRoomIsShownFromTheRoom) {
   Scene s;
   Quad down = floor_quad(1.f);

@@ -1,5 +1,7 @@
 #include "halflight/output/lit_mesh.h"
 
+#include <tsl/robin_map.h>
+
 #include "halflight/base/parallel.h"
 #include "halflight/output/refine.h"
 
@@ -26,6 +28,37 @@ Rgb mean_irradiance(const WorkMesh& mesh, const Geometry& g) {
     return Sum{area * light, area};
   });
   return sum.area > 0.0 ? Rgb(sum.light / sum.area) : Rgb(0.f);
+}
+
+// Surfaces run on into other solids: a wall goes up behind the ceiling. With reflected light about,
+// a place that no light reaches at all is buried like that, and its blackness would bleed over the
+// triangles that come out of the solid. It takes the mean light of its lit neighbours instead.
+void fill_buried_sites(WorkMesh& mesh) {
+  const auto is_black = [](const Reading& r) { return r.irradiance() == Rgb(0.f); };
+  const bool has_reflections = std::any_of(mesh.sites.begin(), mesh.sites.end(), [](const Site& s) {
+    return s.light.indirect != Rgb(0.f);
+  });
+  if (!has_reflections) return;
+  struct Neighbours {
+    Reading sum;
+    float count = 0.f;
+  };
+  tsl::robin_map<std::uint32_t, Neighbours> buried;
+  for (const Sheet& s : mesh.sheets)
+    for (const LitVertexId v : s.corners) {
+      if (!is_black(mesh.sites[mesh.site(v)].light)) continue;
+      Neighbours& n = buried[mesh.site(v).value];
+      for (const LitVertexId w : s.corners) {
+        const Reading& light = mesh.sites[mesh.site(w)].light;
+        if (is_black(light)) continue;
+        n.sum.direct += light.direct;
+        n.sum.indirect += light.indirect;
+        n.count += 1.f;
+      }
+    }
+  for (const auto& [site, n] : buried)
+    if (n.count > 0.f)
+      mesh.sites[SiteId(site)].light = {n.sum.direct / n.count, n.sum.indirect / n.count};
 }
 
 // Sheets by primitive instance, fronts before backs, then by input triangle.
@@ -124,6 +157,7 @@ LitMesh build_lit_mesh(const Scene& scene, const Geometry& g, const LightReader&
   WorkMesh mesh = make_work_mesh(g, std::move(points), edges, shown, options.feature_size, counted);
   result.mean_irradiance = mean_irradiance(mesh, g);
   refine(mesh, shown, read, options, max_component(result.mean_irradiance), progress, result);
+  fill_buried_sites(mesh);
   result.primitives = to_primitives(mesh, scene, g);
   for (const LitPrimitive& p : result.primitives) {
     result.vertices += p.positions.size();
