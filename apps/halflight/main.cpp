@@ -16,6 +16,8 @@ int main(int argc, char** argv) {
   cli.require_subcommand(1);
   int status = halflight::app::kGoalMet;
   halflight::app::add_inspect(cli, status);
+  halflight::app::add_reference(cli, status);
+  halflight::app::add_render(cli, status);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
