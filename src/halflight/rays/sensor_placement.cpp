@@ -8,7 +8,9 @@ namespace {
 constexpr float kReachShare = 1e-4f;   // of the scene's diagonal
 constexpr float kReachLifts = 8.f;     // rounding errors
 constexpr float kLeastCosine = 0.5f;   // 60 degrees
-constexpr float kSameDistance = 2.f;   // lifts: distances that differ by less are equal
+constexpr float kOneSheet = 4.f;       // lifts: layers that are closer together are one
+constexpr float kSameLean = 0.1f;      // cosines that differ by less are equal
+constexpr float kSameHeight = 0.25f;   // lifts: heights that differ by less are equal
 
 // Share of the segment from `start` along `edge` at which it is closest to p, within [0, 1].
 float along(const Vec3& p, const Vec3& start, const Vec3& edge) {
@@ -20,6 +22,7 @@ float along(const Vec3& p, const Vec3& start, const Vec3& edge) {
 struct Candidate {
   SensorPlacement placement;
   float distance = kInfinity;
+  float height = 0.f;  // above the sensor along its normal
   float cosine = 0.f;
 };
 
@@ -35,6 +38,7 @@ Candidate candidate(const Geometry& g, TriangleId t, const Vec3& p, const Vec3& 
   at.front = cosine >= 0.f;
   at.normal = at.front ? normal : -normal;
   found.distance = glm::distance(p, at.position);
+  found.height = glm::dot(at.position - p, n);
   found.cosine = std::abs(cosine);
   return found;
 }
@@ -70,20 +74,22 @@ SensorPlacement place_sensor(const Geometry& geometry, const RayScene& rays, con
 
   const float reach = sensor_reach(geometry, rays);
   std::vector<Candidate> candidates;
-  float nearest = reach;
   for (const TriangleId t : rays.triangles_near(position, reach)) {
     const Candidate c = candidate(geometry, t, position, normal);
-    if (!(c.distance <= reach) || c.cosine < kLeastCosine) continue;
-    candidates.push_back(c);
-    nearest = std::min(nearest, c.distance);
+    if (c.distance <= reach && c.cosine >= kLeastCosine) candidates.push_back(c);
   }
   if (candidates.empty()) return in_the_air;
-  const float far = nearest + kSameDistance * rays.lift_distance();
-  const auto leans_less = [&](const Candidate& l, const Candidate& r) {
-    if ((l.distance <= far) != (r.distance <= far)) return l.distance <= far;
-    return l.cosine > r.cosine;
+  const float lift = rays.lift_distance();
+  const auto keep_most = [&](auto value, float tolerance) {
+    float most = -kInfinity;
+    for (const Candidate& c : candidates) most = std::max(most, value(c));
+    std::erase_if(candidates, [&](const Candidate& c) { return value(c) < most - tolerance; });
   };
-  return std::min_element(candidates.begin(), candidates.end(), leans_less)->placement;
+  keep_most([](const Candidate& c) { return -c.distance; }, kOneSheet * lift);
+  keep_most([](const Candidate& c) { return c.cosine; }, kSameLean);
+  keep_most([](const Candidate& c) { return c.height; }, kSameHeight * lift);
+  keep_most([](const Candidate& c) { return -c.distance; }, 0.f);
+  return candidates.front().placement;
 }
 
 }  // namespace halflight
