@@ -10,7 +10,12 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class ImageFiles : public testing::TemporaryFolder {};
+class ImageFiles : public ::testing::Test {
+ protected:
+  std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
+
+  TemporaryFolder folder_;
+};
 
 Image gradient(int width, int height) {
   Image image(width, height);
@@ -64,7 +69,7 @@ TEST_F(ImageFiles, DamagedAndForeignFilesAreErrorsThatNameTheFile) {
     ASSERT_FALSE(cut) << name;
     EXPECT_THAT(cut.error().line(), HasSubstr(name));
   }
-  const auto text = read_float_image(write("a.txt", "not a picture"));
+  const auto text = read_float_image(folder_.write("a.txt", "not a picture"));
   ASSERT_FALSE(text);
   EXPECT_THAT(text.error().line(), HasSubstr("neither a PNG nor an EXR"));
   EXPECT_FALSE(read_float_image(path("absent.png")));

@@ -9,16 +9,21 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class SensorFiles : public testing::TemporaryFolder {};
+class SensorFiles : public ::testing::Test {
+ protected:
+  std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
+
+  TemporaryFolder folder_;
+};
 
 TEST_F(SensorFiles, CommentsBlankLinesAndFurtherColumnsAreSkipped) {
-  const auto file = write("s.txt",
-                          "# six columns\r\n"
-                          "1 2 3 0 1 0\n"
-                          "\n"
-                          "  -1.5e-3\t+2 3   0 0 -2  # normal of length 2\n"
-                          "4,5,6, 1,0,0\n"
-                          "7 8 9 1 0 0 0.5 0.25 0.125 0.01");
+  const auto file = folder_.write("s.txt",
+                                  "# six columns\r\n"
+                                  "1 2 3 0 1 0\n"
+                                  "\n"
+                                  "  -1.5e-3\t+2 3   0 0 -2  # normal of length 2\n"
+                                  "4,5,6, 1,0,0\n"
+                                  "7 8 9 1 0 0 0.5 0.25 0.125 0.01");
   const auto sensors = read_sensors(file);
   ASSERT_TRUE(sensors) << sensors.error().line();
   ASSERT_EQ(sensors->size(), 4u);
@@ -29,7 +34,7 @@ TEST_F(SensorFiles, CommentsBlankLinesAndFurtherColumnsAreSkipped) {
 
 TEST_F(SensorFiles, ErrorsNameFileAndLine) {
   const auto message = [&](const std::string& text) {
-    const auto sensors = read_sensors(write("s.txt", text));
+    const auto sensors = read_sensors(folder_.write("s.txt", text));
     return sensors ? std::string("no error") : sensors.error().line();
   };
   EXPECT_THAT(message("1 2 3 0 1 0\n1 2 3 0 1\n"), HasSubstr("s.txt:2: 5 numbers"));
@@ -49,7 +54,7 @@ TEST_F(SensorFiles, PrintedNumbersReadBackAsTheSameValues) {
   const std::vector<float> errors{0.015f};
   const std::string table = sensor_table(sensors, irradiance, errors);
   EXPECT_EQ(table, "0.1 0.3333333333333333 1e-17 0 -1 0 0.1 1e-09 12345.678 0.015\n");
-  const auto back = read_sensors(write("s.txt", table));
+  const auto back = read_sensors(folder_.write("s.txt", table));
   ASSERT_TRUE(back);
   EXPECT_EQ((*back)[0].position, sensors[0].position);
 }

@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class ChooseView : public testing::TemporaryFolder {
+class ChooseView : public ::testing::Test {
  protected:
   ChooseView() {
     for (const char* name : {"door", "window"}) {
@@ -31,6 +31,7 @@ class ChooseView : public testing::TemporaryFolder {
   }
   static bool near(const Vec3& a, const Vec3& b) { return glm::distance(a, b) < 1e-5f; }
 
+  TemporaryFolder folder_;
   Scene scene_;
   Geometry geometry_;
 };
@@ -62,7 +63,8 @@ TEST_F(ChooseView, NumbersAreInTheCoordinatesOfTheFile) {
 }
 
 TEST_F(ChooseView, ReadsCameraFiles) {
-  const auto file = write("view.json", R"({"camera": {"position": [0, 0, 100], "forward": [0, 5, 0],
+  const auto file =
+      folder_.write("view.json", R"({"camera": {"position": [0, 0, 100], "forward": [0, 5, 0],
       "up": [0, 0, 1], "fov_y_deg": 90, "width": 640, "height": 320}})");
   const auto view = choose(file.string());
   ASSERT_TRUE(view) << view.error().line();
@@ -75,7 +77,7 @@ TEST_F(ChooseView, ReadsCameraFiles) {
   for (const char* bad : {"", "[]", "{}", R"({"position": [0, 0], "forward": [0, 0, 1]})",
                           R"({"position": [0, 0, 1], "forward": [0, 0, 0]})",
                           R"({"position": [0, 0, 1], "target": [0, 0, 0], "fov_y_deg": -4})"}) {
-    const auto refused = choose(write("bad.json", bad).string());
+    const auto refused = choose(folder_.write("bad.json", bad).string());
     ASSERT_FALSE(refused) << bad;
     EXPECT_THAT(refused.error().line(), HasSubstr("bad.json"));
   }

@@ -5,9 +5,7 @@
 #include <vector>
 
 #include "halflight/rays/path_tracer.h"
-#include "halflight/rays/ray_scene.h"
-#include "halflight/scene/geometry.h"
-#include "halflight/scene/scene.h"
+#include "halflight/rays/world.h"
 
 namespace halflight::testing {
 
@@ -71,16 +69,10 @@ class QuadScene {
 };
 
 // A scene made ready for rays.
-struct Traced {
-  Scene scene;
-  Geometry geometry;
-  RayScene rays;
+struct Traced : World {
   PathTracer tracer;
 
-  explicit Traced(const QuadScene& quads)
-      : scene(quads.scene), geometry(flatten(scene)), rays(scene, geometry),
-        tracer(scene, geometry, rays) {}
-  Traced(const Traced&) = delete;
+  explicit Traced(const QuadScene& quads) : World(quads.scene), tracer(*this) {}
 
   float irradiance(const Vec3& p, const Vec3& n, std::uint32_t samples = 1u << 14) const {
     return tracer.estimate_irradiance(p, n, samples, 7).mean.g;

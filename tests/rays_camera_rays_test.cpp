@@ -49,9 +49,10 @@ TEST(PathTracedImage, ShowsEmittersSkyAndReflectedLightWithTheirRadiance) {
   PlacedCamera camera;
   const CameraRays rays(camera, 60, 20);
   const Image image = path_traced_image(t.tracer, rays, 60, 20, 64, 1, Progress());
-  EXPECT_EQ(image.at(22, 10), Rgb(7.f));          // left of the centre: the lamp
-  EXPECT_NEAR(image.at(30, 10).g, 0.8f * 0.5f, 1e-5f);  // sky light on white, coplanar with the lamp
-  EXPECT_EQ(image.at(55, 10), Rgb(0.5f));         // right: the sky
+  EXPECT_EQ(image.at(22, 10), Rgb(7.f));  // left of the centre: the lamp
+  EXPECT_NEAR(image.at(30, 10).g, 0.8f * 0.5f,
+              1e-5f);                      // sky light on white, coplanar with the lamp
+  EXPECT_EQ(image.at(55, 10), Rgb(0.5f));  // right: the sky
 }
 
 TEST(AutomaticView, LooksIntoALitRoomFromInside) {

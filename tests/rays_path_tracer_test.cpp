@@ -68,7 +68,8 @@ TEST(PathTracer, TexturedEmitterSendsItsMeanFromFarAway) {
   m.reflectance = Rgb(0.f);
   m.emission = Rgb(8.f);
   m.emission_texture.texture = quads.scene.textures.push_back(stripes);
-  quads.quad({-.5f, 20.f, -.5f}, {1.f, 0.f, 0.f}, {0.f, 0.f, 1.f}, quads.scene.materials.push_back(m));
+  quads.quad({-.5f, 20.f, -.5f}, {1.f, 0.f, 0.f}, {0.f, 0.f, 1.f},
+             quads.scene.materials.push_back(m));
   const Traced t(quads);
   const float mean_radiance = 8.f / 4.f, solid_angle = 1.f / 400.f;
   EXPECT_NEAR(t.irradiance(Vec3(0.f), kUp), mean_radiance * solid_angle,
@@ -221,7 +222,8 @@ TEST(PathTracer, SensorsGiveTheSameBytesForAnyThreadCount) {
   quads.box(Vec3(0.f), Vec3(2.f), quads.material(0.7f), true);
   quads.quad({.8f, 1.9f, .8f}, {.4f, 0.f, 0.f}, {0.f, 0.f, .4f}, quads.material(0.f, 10.f));
   std::vector<WorldSensor> sensors;
-  for (int i = 1; i < 150; ++i) sensors.push_back({{0.013f * static_cast<float>(i), 0.f, 1.f}, kUp});
+  for (int i = 1; i < 150; ++i)
+    sensors.push_back({{0.013f * static_cast<float>(i), 0.f, 1.f}, kUp});
   const auto run = [&](int threads) {
     set_thread_count(threads);
     const Traced t(quads);

@@ -9,6 +9,7 @@
 #include "halflight/io/load_scene.h"
 #include "halflight/io/sensors.h"
 #include "halflight/rays/reference_sensors.h"
+#include "shared_scenes.h"
 
 namespace halflight {
 namespace {
@@ -36,10 +37,11 @@ std::vector<StoredReading> stored_readings(const std::filesystem::path& path) {
 class ReferenceScenes : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ReferenceScenes, DifferFromTheStoredIrradianceByNoiseOnly) {
-  const std::filesystem::path shared = HALFLIGHT_SHARED_SCENES, name = GetParam();
-  const auto readings_file = shared / "references" / (name.parent_path().string() + ".txt");
-  if (!std::filesystem::exists(readings_file)) GTEST_SKIP() << "the scene corpus is not here";
-  const auto scene = load_scene(shared / name);
+  HALFLIGHT_NEEDS_SHARED_SCENES();
+  const std::filesystem::path name = GetParam();
+  const auto readings_file =
+      shared_scenes() / "references" / (name.parent_path().string() + ".txt");
+  Result<Scene> scene = load_scene(shared_scenes() / name);
   ASSERT_TRUE(scene) << scene.error().line();
   auto sensors = read_sensors(readings_file);
   ASSERT_TRUE(sensors) << sensors.error().line();
@@ -47,9 +49,8 @@ TEST_P(ReferenceScenes, DifferFromTheStoredIrradianceByNoiseOnly) {
   std::vector<WorldSensor> in_world;
   for (const Sensor& s : *sensors) in_world.push_back(to_world(scene->to_world, s));
 
-  const Geometry geometry = flatten(*scene);
-  const RayScene rays(*scene, geometry);
-  const PathTracer tracer(*scene, geometry, rays);
+  const World world(std::move(*scene));
+  const PathTracer tracer(world);
   const auto estimates = reference_irradiance(tracer, in_world, kSamples, 1, Progress());
   const auto stored = stored_readings(readings_file);
   double squares = 0.0, ours = 0.0, theirs = 0.0;

@@ -27,8 +27,9 @@ TEST(SensorPlacement, AHairOffOrUnderTheFloorReadsTheFloor) {
     EXPECT_EQ(at.normal, kUp);
     EXPECT_TRUE(at.front);
     const auto [a, b, c] = t.geometry.corners(at.triangle);
-    EXPECT_NEAR(glm::distance(a + at.barycentric.x * (b - a) + at.barycentric.y * (c - a),
-                              at.position), 0.f, 1e-5f);
+    EXPECT_NEAR(
+        glm::distance(a + at.barycentric.x * (b - a) + at.barycentric.y * (c - a), at.position),
+        0.f, 1e-5f);
   }
 }
 

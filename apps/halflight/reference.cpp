@@ -28,15 +28,14 @@ float one_number(const Rgb& standard_error) {
 Result<void> reference(const ReferenceArguments& arguments) {
   const auto sensors = read_sensors(arguments.points);
   if (!sensors) return tl::unexpected(sensors.error());
-  const Result<Scene> scene = load(arguments.scene);
+  Result<Scene> scene = load(arguments.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
-  const Geometry geometry = flatten(*scene);
-  const RayScene rays(*scene, geometry);
-  const PathTracer tracer(*scene, geometry, rays);
+  const World world(std::move(*scene));
+  const PathTracer tracer(world);
 
   std::vector<WorldSensor> in_world;
-  for (const Sensor& sensor : *sensors) in_world.push_back(to_world(scene->to_world, sensor));
+  for (const Sensor& sensor : *sensors) in_world.push_back(to_world(world.scene.to_world, sensor));
   const Progress progress(terminal_progress());
   const auto estimates =
       reference_irradiance(tracer, in_world, arguments.samples, arguments.seed, progress);

@@ -31,13 +31,12 @@ Result<void> check(const RenderArguments& arguments) {
 
 Result<void> render(const RenderArguments& arguments) {
   if (auto ok = check(arguments); !ok) return ok;
-  const Result<Scene> scene = load(arguments.scene);
+  Result<Scene> scene = load(arguments.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
-  const Geometry geometry = flatten(*scene);
-  const RayScene rays(*scene, geometry);
-  const PathTracer tracer(*scene, geometry, rays);
-  const Result<View> view = choose_view(arguments.view, *scene, geometry,
+  const World world(std::move(*scene));
+  const PathTracer tracer(world);
+  const Result<View> view = choose_view(arguments.view, world.scene, world.geometry,
                                         [&] { return automatic_view(tracer, arguments.seed); });
   if (!view) return tl::unexpected(view.error());
 
@@ -67,7 +66,8 @@ void add_render(CLI::App& cli, int& status) {
       .add_option("--visibility", arguments->visibility_output,
                   "also write the visible share of the direct light of each pixel: .exr or .png")
       ->type_name("FILE");
-  command.add_option("--visibility-samples", arguments->visibility_samples, "light samples per pixel")
+  command
+      .add_option("--visibility-samples", arguments->visibility_samples, "light samples per pixel")
       ->type_name("N")
       ->check(CLI::Range(1u, 1u << 24))
       ->capture_default_str();

@@ -35,9 +35,8 @@ std::optional<Number> to_number(std::string_view text) {
 Result<std::pair<int, int>> to_size(const std::string& text) {
   const std::size_t x = text.find('x');
   const auto width = to_number<int>(std::string_view(text).substr(0, x));
-  const auto height = x == std::string::npos
-                          ? std::nullopt
-                          : to_number<int>(std::string_view(text).substr(x + 1));
+  const auto height =
+      x == std::string::npos ? std::nullopt : to_number<int>(std::string_view(text).substr(x + 1));
   const auto fits = [](std::optional<int> n) { return n && *n > 0 && *n <= kLargestSide; };
   if (!fits(width) || !fits(height))
     return input_error("'" + text + "' is not a picture size", "--size", "write it as 1280x720");
@@ -65,14 +64,16 @@ void add_view_arguments(CLI::App& command, ViewArguments& arguments) {
   command.add_option("--size", arguments.size, "size of the picture in pixels")
       ->type_name("WxH")
       ->default_str("the camera's, or 1280x720");
-  command.add_option("--exposure", arguments.exposure, "stops by which a PNG is brightened, or auto")
+  command
+      .add_option("--exposure", arguments.exposure, "stops by which a PNG is brightened, or auto")
       ->type_name("EV")
       ->capture_default_str();
   command.add_option("--tone-map", arguments.tone_map, "how a PNG holds bright light")
       ->transform(CLI::CheckedTransformer(kToneMaps))
       ->type_name("none|filmic|agx|neutral")
       ->default_str("agx");
-  command.add_option("-o,--output", arguments.output, "picture to write: .png, or .exr for radiance")
+  command
+      .add_option("-o,--output", arguments.output, "picture to write: .png, or .exr for radiance")
       ->type_name("FILE")
       ->required();
 }
@@ -85,8 +86,7 @@ Result<void> check(const ViewArguments& arguments) {
 }
 
 Result<View> choose_view(const ViewArguments& arguments, const Scene& scene,
-                         const Geometry& geometry,
-                         const std::function<PlacedCamera()>& automatic) {
+                         const Geometry& geometry, const std::function<PlacedCamera()>& automatic) {
   Result<View> view = choose_view(arguments.camera, scene, geometry, automatic);
   if (!view) return view;
   if (!arguments.size.empty()) {

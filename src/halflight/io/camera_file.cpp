@@ -61,8 +61,9 @@ Result<View> read_camera_file(const std::filesystem::path& path, const Mat4& to_
   if (!bytes) return tl::unexpected(bytes.error());
   const Json file = Json::parse(*bytes, nullptr, /*allow_exceptions=*/false);
   if (!file.is_object())
-    return input_error("this is not a camera in JSON", path.string(),
-                       "write {\"position\": [x, y, z], \"forward\": [x, y, z], \"fov_y_deg\": 45}");
+    return input_error(
+        "this is not a camera in JSON", path.string(),
+        "write {\"position\": [x, y, z], \"forward\": [x, y, z], \"fov_y_deg\": 45}");
   const auto inner = file.find("camera");
   const Json& object = inner != file.end() && inner->is_object() ? *inner : file;
   Result<PlacedCamera> camera = to_camera(object, to_world, path.string());

@@ -62,8 +62,8 @@ Result<Image> decode_png_values(const Bytes& bytes, PngValues values, const std:
                                 : static_cast<float>(texels[3 * i + k]) / 255.f;
       const bool is_linear = deep, want_linear = values == PngValues::linear;
       image.pixels[i][static_cast<int>(k)] = is_linear == want_linear ? stored
-                                             : want_linear ? linear_from_srgb(stored)
-                                                           : srgb_from_linear(stored);
+                                             : want_linear            ? linear_from_srgb(stored)
+                                                                      : srgb_from_linear(stored);
     }
   return image;
 }
@@ -92,9 +92,9 @@ Result<Image> decode_exr(const Bytes& bytes, const std::string& where) {
                            "save it with channels R, G, B or Y");
       // OpenEXR addresses pixels from the window's origin, which may lie outside of our memory.
       frame.insert(names[k],
-                   Imf::Slice::Make(Imf::FLOAT,
-                                    reinterpret_cast<char*>(image.pixels.data()) + k * sizeof(float),
-                                    window, sizeof(Rgb), sizeof(Rgb) * static_cast<std::size_t>(width)));
+                   Imf::Slice::Make(
+                       Imf::FLOAT, reinterpret_cast<char*>(image.pixels.data()) + k * sizeof(float),
+                       window, sizeof(Rgb), sizeof(Rgb) * static_cast<std::size_t>(width)));
     }
     file.setFrameBuffer(frame);
     file.readPixels(window.min.y, window.max.y);
@@ -116,7 +116,8 @@ bool starts_with(const Bytes& bytes, std::initializer_list<std::uint8_t> magic) 
 Result<Image> read_float_image(const std::filesystem::path& path, PngValues png) {
   const Result<Bytes> bytes = read_file(path);
   if (!bytes) return tl::unexpected(bytes.error());
-  if (starts_with(*bytes, {0x89, 'P', 'N', 'G'})) return decode_png_values(*bytes, png, path.string());
+  if (starts_with(*bytes, {0x89, 'P', 'N', 'G'}))
+    return decode_png_values(*bytes, png, path.string());
   if (starts_with(*bytes, {0x76, 0x2f, 0x31, 0x01})) return decode_exr(*bytes, path.string());
   return input_error("this is neither a PNG nor an EXR picture", path.string(),
                      "convert it to one of them");

@@ -73,7 +73,8 @@ Result<std::vector<Sensor>> read_sensors(const std::filesystem::path& path) {
     sensors.push_back(*sensor);
   }
   if (sensors.empty())
-    return input_error("the file holds no sensor", path.string(), "write one x y z nx ny nz a line");
+    return input_error("the file holds no sensor", path.string(),
+                       "write one x y z nx ny nz a line");
   return sensors;
 }
 

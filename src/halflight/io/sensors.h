@@ -20,7 +20,7 @@ struct Sensor {
 };
 
 struct WorldSensor {
-  Vec3 position{0.f};  // metres, +Y up
+  Vec3 position{0.f};          // metres, +Y up
   Vec3 normal{0.f, 1.f, 0.f};  // unit
 };
 

@@ -36,8 +36,9 @@ std::optional<std::vector<float>> number_list(std::string_view text) {
 
 Result<View> given_view(const std::vector<float>& v, const Mat4& to_world) {
   if (v.size() != 6 && v.size() != 7)
-    return input_error(fmt::format("a view has 6 or 7 numbers, not {}", v.size()), "--camera",
-                       "px,py,pz,tx,ty,tz,fov: position, target, vertical field of view in degrees");
+    return input_error(
+        fmt::format("a view has 6 or 7 numbers, not {}", v.size()), "--camera",
+        "px,py,pz,tx,ty,tz,fov: position, target, vertical field of view in degrees");
   View view;
   const Vec3 target = transform_point(to_world, {v[3], v[4], v[5]});
   view.camera.position = transform_point(to_world, {v[0], v[1], v[2]});

@@ -49,10 +49,14 @@ Rgb neutral(const Rgb& c) {
 
 Rgb curve(ToneMap map, const Rgb& c) {
   switch (map) {
-    case ToneMap::filmic: return filmic(c);
-    case ToneMap::agx: return agx(c);
-    case ToneMap::neutral: return neutral(c);
-    case ToneMap::none: break;
+    case ToneMap::filmic:
+      return filmic(c);
+    case ToneMap::agx:
+      return agx(c);
+    case ToneMap::neutral:
+      return neutral(c);
+    case ToneMap::none:
+      break;
   }
   return c;
 }

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t kEyes = 256;
 constexpr int kDirections = 8;
-constexpr int kRaysPerSide = 10;     // of the square grid that judges a view
-constexpr float kPitch = -0.1f;      // radians: a little downwards
-constexpr float kFieldOfView = 0.9f; // radians
-constexpr float kLampShare = 0.25f;  // what seeing a light is worth against seeing a lit surface
+constexpr int kRaysPerSide = 10;      // of the square grid that judges a view
+constexpr float kPitch = -0.1f;       // radians: a little downwards
+constexpr float kFieldOfView = 0.9f;  // radians
+constexpr float kLampShare = 0.25f;   // what seeing a light is worth against seeing a lit surface
 
 struct Eye {
   Vec3 position{0.f};
@@ -24,13 +24,13 @@ struct Eye {
 
 // Half way through the open space before a random point of a random triangle.
 Eye eye_before_surface(const PathTracer& tracer, std::uint64_t seed) {
-  const Geometry& g = tracer.geometry();
+  const Geometry& g = tracer.world().geometry;
   const TriangleId t(hash(seed, 1) % g.triangles.size());
   RayHit start{t, uniform_triangle(random_shift(seed)), 0.f, (hash(seed, 2) & 1u) == 0};
   const SurfacePoint from = surface_point(g, start);
-  const Vec3 origin = tracer.rays().lift(from.position, from.normal);
+  const Vec3 origin = tracer.world().rays.lift(from.position, from.normal);
   const float farthest = g.bounds.diagonal();
-  const auto hit = tracer.rays().closest_hit(origin, from.normal, farthest, seed);
+  const auto hit = tracer.world().rays.closest_hit(origin, from.normal, farthest, seed);
   const float room = hit ? hit->distance : farthest;
   return {origin + 0.5f * room * from.normal, room};
 }
@@ -53,10 +53,11 @@ float judge(const PathTracer& tracer, const PlacedCamera& camera, float comforta
   float worth = 0.f;
   for (int i = 0; i < kRaysPerSide * kRaysPerSide; ++i) {
     const CameraRay ray = pixels.through(Vec2(i % kRaysPerSide, i / kRaysPerSide) + 0.5f);
-    const auto hit = tracer.rays().closest_hit(ray.origin, ray.direction, kInfinity, hash(seed, i));
+    const auto hit =
+        tracer.world().rays.closest_hit(ray.origin, ray.direction, kInfinity, hash(seed, i));
     if (!hit) continue;
-    const bool is_lamp =
-        max_component(tracer.emitters().radiance(hit->triangle, hit->barycentric, hit->front)) > 0.f;
+    const bool is_lamp = max_component(tracer.emitters().radiance(hit->triangle, hit->barycentric,
+                                                                  hit->front)) > 0.f;
     PathSampler sampler(seed, static_cast<std::uint32_t>(i));
     const Rgb arriving = tracer.radiance(ray.origin, ray.direction, sampler);
     if (!(max_component(arriving) > 0.f)) continue;
@@ -71,9 +72,10 @@ float judge(const PathTracer& tracer, const PlacedCamera& camera, float comforta
 }  // namespace
 
 PlacedCamera automatic_view(const PathTracer& tracer, std::uint64_t seed) {
-  if (tracer.geometry().triangles.empty()) return {};
+  if (tracer.world().geometry.triangles.empty()) return {};
   std::vector<Eye> eyes(kEyes);
-  parallel_for(kEyes, 8, [&](std::size_t i) { eyes[i] = eye_before_surface(tracer, hash(seed, i)); });
+  parallel_for(kEyes, 8,
+               [&](std::size_t i) { eyes[i] = eye_before_surface(tracer, hash(seed, i)); });
   std::vector<float> rooms;
   for (const Eye& eye : eyes) rooms.push_back(eye.room);
   std::nth_element(rooms.begin(), rooms.begin() + kEyes / 2, rooms.end());
@@ -81,11 +83,12 @@ PlacedCamera automatic_view(const PathTracer& tracer, std::uint64_t seed) {
 
   std::vector<float> scores(kEyes * kDirections);
   parallel_for(scores.size(), 8, [&](std::size_t i) {
-    const PlacedCamera camera = look(eyes[i / kDirections].position, static_cast<int>(i % kDirections));
+    const PlacedCamera camera =
+        look(eyes[i / kDirections].position, static_cast<int>(i % kDirections));
     scores[i] = judge(tracer, camera, comfortable_distance, hash(seed, kEyes + i));
   });
-  const auto best = static_cast<std::size_t>(
-      std::max_element(scores.begin(), scores.end()) - scores.begin());
+  const auto best =
+      static_cast<std::size_t>(std::max_element(scores.begin(), scores.end()) - scores.begin());
   return look(eyes[best / kDirections].position, static_cast<int>(best % kDirections));
 }
 

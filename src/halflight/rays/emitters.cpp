@@ -68,8 +68,7 @@ std::optional<LightSample> Emitters::sample(const Vec3& p, const Vec3& n, float 
   const std::optional<LightTree::Choice> choice = tree_.choose(p, n, u_light);
   if (!choice) return std::nullopt;
   const Place& place = places_[choice->emitter];
-  if (place.triangle.valid())
-    return sample_triangle(place.triangle, p, n, u, choice->probability);
+  if (place.triangle.valid()) return sample_triangle(place.triangle, p, n, u, choice->probability);
 
   const PunctualLight& light = geometry_->lights[place.punctual];
   const float cosine = glm::dot(n, direction_to(light, p));

@@ -15,10 +15,10 @@ namespace halflight {
 
 // One sampled place on a light, seen from a surface.
 struct LightSample {
-  Vec3 point{0.f};       // on the light
-  Vec3 normal{0.f};      // of the light's side that shines at the surface; zero: a punctual light
-  Rgb irradiance{0.f};   // W/m2 on the surface when nothing is between, divided by the probability
-  float density = 0.f;   // per steradian; 0: a punctual light, which no ray meets by chance
+  Vec3 point{0.f};      // on the light
+  Vec3 normal{0.f};     // of the light's side that shines at the surface; zero: a punctual light
+  Rgb irradiance{0.f};  // W/m2 on the surface when nothing is between, divided by the probability
+  float density = 0.f;  // per steradian; 0: a punctual light, which no ray meets by chance
 };
 
 class Emitters {
@@ -41,7 +41,7 @@ class Emitters {
 
  private:
   struct Place {
-    TriangleId triangle;      // invalid: a punctual light
+    TriangleId triangle;  // invalid: a punctual light
     std::uint32_t punctual = 0;
   };
   LightBounds bounds_of(TriangleId triangle) const;

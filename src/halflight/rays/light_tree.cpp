@@ -63,14 +63,15 @@ int longest_axis(const Bounds3f& b) {
 
 // theta: angle between the light's axis and the direction to p; theta_o: its cone; theta_u: angle
 // that the sphere around the bounds subtends at p; each difference of angles is not below 0.
-// intensity * cos(theta - theta_o - theta_u) * cos(theta_i - theta_u) / (d_near * d_far): the mean of
-// 1/d^2 along a row of lights from d_near to d_far, where 1/d^2 to the centre would not tell a group
-// that begins next to p from one that p is far from.
+// intensity * cos(theta - theta_o - theta_u) * cos(theta_i - theta_u) / (d_near * d_far): the mean
+// of 1/d^2 along a row of lights from d_near to d_far, where 1/d^2 to the centre would not tell a
+// group that begins next to p from one that p is far from.
 float irradiance_estimate(const LightBounds& light, const Vec3& p, const Vec3& n) {
   const Vec3 offset = p - light.bounds.center();
   const float distance = glm::length(offset);
   const float radius = 0.5f * light.bounds.diagonal();
-  const Vec3 outside = glm::max(glm::max(light.bounds.lower - p, p - light.bounds.upper), Vec3(0.f));
+  const Vec3 outside =
+      glm::max(glm::max(light.bounds.lower - p, p - light.bounds.upper), Vec3(0.f));
   const float near = std::max(glm::length(outside), kLeastNear * radius);
   const float near_times_far = near * (distance + radius);
   if (!(near_times_far > 0.f)) return 0.f;
@@ -123,12 +124,12 @@ LightTree::LightTree(std::span<const LightBounds> lights) : trails_(lights.size(
                        const float cb = lights[b].bounds.center()[axis];
                        return ca != cb ? ca < cb : a < b;
                      });
-    todo.push_back({middle, range.last, range.depth + 1,
-                    range.trail | (1u << range.depth), index});
+    todo.push_back({middle, range.last, range.depth + 1, range.trail | (1u << range.depth), index});
     todo.push_back({range.first, middle, range.depth + 1, range.trail, kNone});
   }
   for (std::size_t i = nodes_.size(); i-- > 0;)
-    if (nodes_[i].right != 0) nodes_[i].light = unite(nodes_[i + 1].light, nodes_[nodes_[i].right].light);
+    if (nodes_[i].right != 0)
+      nodes_[i].light = unite(nodes_[i + 1].light, nodes_[nodes_[i].right].light);
 }
 
 std::optional<LightTree::Choice> LightTree::choose(const Vec3& p, const Vec3& n, float u) const {

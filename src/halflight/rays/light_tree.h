@@ -46,8 +46,8 @@ class LightTree {
     EmitterId emitter;        // of a leaf
   };
   std::vector<Node> nodes_;
-  // From the root to each emitter: bit k says which child is taken at depth k. Splits are by median,
-  // so that depth is at most 32.
+  // From the root to each emitter: bit k says which child is taken at depth k. Splits are by
+  // median, so that depth is at most 32.
   std::vector<std::uint32_t> trails_;
 };
 

@@ -1,6 +1,7 @@
 // Sample numbers of one light path: pairs of Owen-scrambled Sobol points, one independent pair of
 // dimensions per decision ("padded"), and plain hashed numbers deep in the path.
-// Burley 2020, "Practical Hash-based Owen Scrambling", JCGT 9(4); Laine and Karras 2011 for the hash.
+// Burley 2020, "Practical Hash-based Owen Scrambling", JCGT 9(4); Laine and Karras 2011 for the
+// hash.
 #pragma once
 
 #include <bit>

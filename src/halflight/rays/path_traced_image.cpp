@@ -22,7 +22,8 @@ Image shade_pixels(int width, int height, std::uint64_t seed, const Progress& pr
       image.pixels[pixel] = shade(corner, hash(seed, pixel));
     });
     const std::size_t done = std::min(first + band, image.pixels.size());
-    progress.report("picture", static_cast<double>(done) / static_cast<double>(image.pixels.size()));
+    progress.report("picture",
+                    static_cast<double>(done) / static_cast<double>(image.pixels.size()));
   }
   return image;
 }
@@ -49,9 +50,9 @@ Image visibility_image(const PathTracer& tracer, const CameraRays& camera, int w
   return shade_pixels(width, height, seed, progress, [&](Vec2 corner, std::uint64_t pixel_seed) {
     const CameraRay ray = camera.through(corner + Vec2(0.5f));
     const auto hit =
-        tracer.rays().closest_hit(ray.origin, ray.direction, kInfinity, pixel_seed);
+        tracer.world().rays.closest_hit(ray.origin, ray.direction, kInfinity, pixel_seed);
     if (!hit) return Rgb(1.f);
-    const SurfacePoint seen = surface_point(tracer.geometry(), *hit);
+    const SurfacePoint seen = surface_point(tracer.world().geometry, *hit);
     return Rgb(tracer.direct_visibility(seen.position, seen.normal, samples_per_pixel, pixel_seed));
   });
 }

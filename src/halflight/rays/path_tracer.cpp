@@ -37,7 +37,7 @@ Rgb PathTracer::directional_light(const Vec3& p, const Vec3& n) const {
   for (const PunctualLight& light : emitters_.directional()) {
     const float cosine = -glm::dot(n, light.direction);
     if (cosine > 0.f)
-      total += light.intensity * (cosine * rays_->transmittance_to_sky(p, -light.direction));
+      total += light.intensity * (cosine * world_->rays.transmittance_to_sky(p, -light.direction));
   }
   return total;
 }
@@ -51,7 +51,7 @@ Rgb PathTracer::sampled_light(const Vec3& p, const Vec3& n, PathSampler& sampler
     const float cosine = glm::dot(n, glm::normalize(s->point - p));
     weight = power_heuristic(s->density, std::max(0.f, cosine) / kPi);
   }
-  return s->irradiance * (weight * rays_->transmittance(p, shadow_ray_end(*rays_, *s)));
+  return s->irradiance * (weight * world_->rays.transmittance(p, shadow_ray_end(world_->rays, *s)));
 }
 
 // E = light samples + pi * (radiance along a cosine-distributed ray), and that radiance is
@@ -59,22 +59,21 @@ Rgb PathTracer::sampled_light(const Vec3& p, const Vec3& n, PathSampler& sampler
 Rgb PathTracer::irradiance_by_one_path(Vec3 p, Vec3 n, PathSampler& sampler) const {
   Rgb total(0.f), weight(1.f);
   for (int bounce = 0;; ++bounce) {
-    const Vec3 origin = rays_->lift(p, n);
+    const Vec3 origin = world_->rays.lift(p, n);
     total += weight * (directional_light(origin, n) + sampled_light(origin, n, sampler));
 
     const Vec3 local = cosine_hemisphere(sampler.next_pair());
     const Vec3 direction = Frame::from_normal(n).to_world(local);
-    const auto hit = rays_->closest_hit(origin, direction, kInfinity, sampler.next_seed());
-    if (!hit) return total + weight * kPi * scene_->sky;
+    const auto hit = world_->rays.closest_hit(origin, direction, kInfinity, sampler.next_seed());
+    if (!hit) return total + weight * kPi * world_->scene.sky;
 
-    const SurfacePoint next = surface_point(*geometry_, *hit);
+    const SurfacePoint next = surface_point(world_->geometry, *hit);
     const Rgb emitted = emitters_.radiance(hit->triangle, hit->barycentric, hit->front);
     if (max_component(emitted) > 0.f) {
-      const float by_light =
-          emitters_.density(hit->triangle, origin, n, direction * hit->distance);
+      const float by_light = emitters_.density(hit->triangle, origin, n, direction * hit->distance);
       total += weight * emitted * (kPi * power_heuristic(local.z / kPi, by_light));
     }
-    weight *= reflectance_at(*scene_, *geometry_, hit->triangle, hit->barycentric);
+    weight *= reflectance_at(world_->scene, world_->geometry, hit->triangle, hit->barycentric);
     const float survival = std::min(max_component(weight), kHighestSurvival);
     if (!(survival > 0.f)) return total;
     if (bounce >= kFirstRoulette) {
@@ -111,18 +110,19 @@ IrradianceEstimate PathTracer::estimate_irradiance(const Vec3& point, const Vec3
 }
 
 Rgb PathTracer::radiance(const Vec3& origin, const Vec3& direction, PathSampler& sampler) const {
-  const auto hit = rays_->closest_hit(origin, direction, kInfinity, sampler.next_seed());
-  if (!hit) return scene_->sky;
+  const auto hit = world_->rays.closest_hit(origin, direction, kInfinity, sampler.next_seed());
+  if (!hit) return world_->scene.sky;
   const Rgb emitted = emitters_.radiance(hit->triangle, hit->barycentric, hit->front);
-  const Rgb reflectance = reflectance_at(*scene_, *geometry_, hit->triangle, hit->barycentric);
+  const Rgb reflectance =
+      reflectance_at(world_->scene, world_->geometry, hit->triangle, hit->barycentric);
   if (!(max_component(reflectance) > 0.f)) return emitted;
-  const SurfacePoint seen = surface_point(*geometry_, *hit);
+  const SurfacePoint seen = surface_point(world_->geometry, *hit);
   return emitted + reflectance / kPi * irradiance_by_one_path(seen.position, seen.normal, sampler);
 }
 
 float PathTracer::direct_visibility(const Vec3& point, const Vec3& normal, std::uint32_t samples,
                                     std::uint64_t seed) const {
-  const Vec3 origin = rays_->lift(point, normal);
+  const Vec3 origin = world_->rays.lift(point, normal);
   double unoccluded = 0.0, hidden = 0.0;
   for (std::uint32_t i = 0; i < samples; ++i) {
     PathSampler sampler(seed, i);
@@ -131,13 +131,13 @@ float PathTracer::direct_visibility(const Vec3& point, const Vec3& normal, std::
     if (!s) continue;
     const double light = average(s->irradiance) / static_cast<double>(samples);
     unoccluded += light;
-    hidden += light * (1.0 - rays_->transmittance(origin, shadow_ray_end(*rays_, *s)));
+    hidden += light * (1.0 - world_->rays.transmittance(origin, shadow_ray_end(world_->rays, *s)));
   }
   for (const PunctualLight& light : emitters_.directional()) {
     const float cosine = std::max(0.f, -glm::dot(normal, light.direction));
     unoccluded += average(light.intensity) * cosine;
     hidden += average(light.intensity) * cosine *
-              (1.f - rays_->transmittance_to_sky(origin, -light.direction));
+              (1.f - world_->rays.transmittance_to_sky(origin, -light.direction));
   }
   return unoccluded > 0.0 ? static_cast<float>(1.0 - hidden / unoccluded) : 1.f;
 }

@@ -1,6 +1,6 @@
 // The reference: unbiased diffuse path tracing, independent of all radiosity code.
-// One light sample and one cosine-distributed ray per bounce, joined by multiple importance sampling
-// (Veach 1997, power heuristic), ended by Russian roulette; no depth limit.
+// One light sample and one cosine-distributed ray per bounce, joined by multiple importance
+// sampling (Veach 1997, power heuristic), ended by Russian roulette; no depth limit.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,7 @@
 #include "halflight/base/vec.h"
 #include "halflight/rays/emitters.h"
 #include "halflight/rays/path_sampler.h"
-#include "halflight/rays/ray_scene.h"
-#include "halflight/scene/geometry.h"
+#include "halflight/rays/world.h"
 
 namespace halflight {
 
@@ -20,9 +19,9 @@ struct IrradianceEstimate {
 
 class PathTracer {
  public:
-  // Refers to all three: they must outlive it. Thread-safe.
-  PathTracer(const Scene& scene, const Geometry& geometry, const RayScene& rays)
-      : scene_(&scene), geometry_(&geometry), rays_(&rays), emitters_(scene, geometry) {}
+  // Refers to the world, which must outlive it. Thread-safe.
+  explicit PathTracer(const World& world)
+      : world_(&world), emitters_(world.scene, world.geometry) {}
 
   // Irradiance on the side of a surface that the unit normal points to; the point lies on the
   // surface or in the air. The standard error comes from up to 16 independent batches of
@@ -30,8 +29,8 @@ class PathTracer {
   IrradianceEstimate estimate_irradiance(const Vec3& point, const Vec3& normal,
                                          std::uint32_t samples, std::uint64_t seed) const;
 
-  // One-path estimate of the radiance that arrives at `origin` against `direction`. Sky and emitters
-  // are visible.
+  // One-path estimate of the radiance that arrives at `origin` against `direction`. Sky and
+  // emitters are visible.
   Rgb radiance(const Vec3& origin, const Vec3& direction, PathSampler& sampler) const;
 
   // Share of the direct light of emitters and lights (the sky apart) that reaches this side of the
@@ -39,8 +38,7 @@ class PathTracer {
   float direct_visibility(const Vec3& point, const Vec3& normal, std::uint32_t samples,
                           std::uint64_t seed) const;
 
-  const Geometry& geometry() const { return *geometry_; }
-  const RayScene& rays() const { return *rays_; }
+  const World& world() const { return *world_; }
   const Emitters& emitters() const { return emitters_; }
 
  private:
@@ -48,9 +46,7 @@ class PathTracer {
   Rgb sampled_light(const Vec3& p, const Vec3& n, PathSampler& sampler) const;
   Rgb directional_light(const Vec3& p, const Vec3& n) const;
 
-  const Scene* scene_;
-  const Geometry* geometry_;
-  const RayScene* rays_;
+  const World* world_;
   Emitters emitters_;
 };
 

@@ -17,7 +17,7 @@ std::vector<IrradianceEstimate> reference_irradiance(const PathTracer& tracer,
     const std::size_t count = std::min(kSensorsPerReport, sensors.size() - first);
     parallel_for(count, 1, [&](std::size_t k) {
       const std::size_t i = first + k;
-      const SensorPlacement at = place_sensor(tracer.geometry(), tracer.rays(),
+      const SensorPlacement at = place_sensor(tracer.world().geometry, tracer.world().rays,
                                               sensors[i].position, sensors[i].normal);
       estimates[i] =
           tracer.estimate_irradiance(at.position, at.normal, samples_per_sensor, hash(seed, i));

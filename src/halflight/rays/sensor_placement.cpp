@@ -5,12 +5,12 @@
 namespace halflight {
 namespace {
 
-constexpr float kReachShare = 1e-4f;   // of the scene's diagonal
-constexpr float kReachLifts = 8.f;     // rounding errors
-constexpr float kLeastCosine = 0.5f;   // 60 degrees
-constexpr float kOneSheet = 4.f;       // lifts: layers that are closer together are one
-constexpr float kSameLean = 0.1f;      // cosines that differ by less are equal
-constexpr float kSameHeight = 0.25f;   // lifts: heights that differ by less are equal
+constexpr float kReachShare = 1e-4f;  // of the scene's diagonal
+constexpr float kReachLifts = 8.f;    // rounding errors
+constexpr float kLeastCosine = 0.5f;  // 60 degrees
+constexpr float kOneSheet = 4.f;      // lifts: layers that are closer together are one
+constexpr float kSameLean = 0.1f;     // cosines that differ by less are equal
+constexpr float kSameHeight = 0.25f;  // lifts: heights that differ by less are equal
 
 // Share of the segment from `start` along `edge` at which it is closest to p, within [0, 1].
 float along(const Vec3& p, const Vec3& start, const Vec3& edge) {

@@ -19,8 +19,8 @@ struct SensorPlacement {
 // coordinates are rounded, and bent quads can be cut along either diagonal. Surfaces further away
 // than `sensor_reach` are not meant; nor are those that lean away from the normal by more than 60
 // degrees (the wall behind a sensor in the corner of a floor). Of surfaces at the same distance the
-// one that leans least is taken, and of a stack of layers thinner than a few rounding errors (panels
-// laid on a ceiling) the outermost, which hides the others from every ray.
+// one that leans least is taken, and of a stack of layers thinner than a few rounding errors
+// (panels laid on a ceiling) the outermost, which hides the others from every ray.
 SensorPlacement place_sensor(const Geometry& geometry, const RayScene& rays, const Vec3& position,
                              const Vec3& normal);
 

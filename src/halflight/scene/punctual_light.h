@@ -22,8 +22,8 @@ inline float range_window(float distance, float range) {
   return std::clamp(1.f - ratio * ratio * ratio * ratio, 0.f, 1.f);
 }
 
-// Unoccluded irradiance, lux, on a surface at `point` that faces the light squarely. Point and spot:
-// I / d^2; directional: its illuminance.
+// Unoccluded irradiance, lux, on a surface at `point` that faces the light squarely. Point and
+// spot: I / d^2; directional: its illuminance.
 inline Rgb facing_irradiance(const PunctualLight& light, const Vec3& point) {
   if (light.kind == Light::Kind::directional) return light.intensity;
   const Vec3 away = point - light.position;
