@@ -64,10 +64,11 @@ struct Draft {
 };
 
 void apply(const Draft& draft, Material& m) {
-  if (draft.reflectance)
-    m.reflectance = *draft.reflectance;
-  else if (m.reflectance_texture.valid())
+  // Kd beside a texture is what viewers without textures show: most exporters write its mean.
+  if (m.reflectance_texture.valid())
     m.reflectance = Rgb(1.f);
+  else if (draft.reflectance)
+    m.reflectance = *draft.reflectance;
   if (draft.emission)
     m.emission = *draft.emission;
   else if (m.emission_texture.valid())

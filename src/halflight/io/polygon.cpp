@@ -97,13 +97,20 @@ class EarClipper {
   std::uint32_t start_ = 0;
 };
 
+// A convex quad is cut from its first corner, as most programs do: when it is bent, the diagonal
+// decides where its surface lies.
+bool fan_covers_quad(std::span<const Vec3> corners) {
+  const std::vector<DVec2> p = flattened(corners);
+  return cross(p[0], p[1], p[2]) > 0.0 && cross(p[0], p[2], p[3]) > 0.0;
+}
+
 }  // namespace
 
 void triangulate_polygon(std::span<const Vec3> corners,
                          std::vector<std::array<std::uint32_t, 3>>& triangles) {
   const std::size_t n = corners.size();
   if (n < 3) return;
-  if (n == 3 || n > kMaxEarClipped) {
+  if (n == 3 || n > kMaxEarClipped || (n == 4 && fan_covers_quad(corners))) {
     for (std::uint32_t i = 1; i + 1 < n; ++i) triangles.push_back({0, i, i + 1});
     return;
   }
