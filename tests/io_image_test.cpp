@@ -39,8 +39,8 @@ TEST_F(ImageFiles, ExrKeepsEveryFloat) {
 
 TEST_F(ImageFiles, PngHoldsSrgbOfTheClampedValues) {
   Image image(3, 1);
-  // IEC 61966-2-1: linear 0.2140 is encoded as 0.5, 0.00100 as 0.0129.
-  image.pixels = {Rgb(0.2140411f), Rgb(-1.f, 2.f, std::nanf("")), Rgb(0.001f)};
+  // IEC 61966-2-1: linear 0.2158605 is encoded as 128 / 255, 0.001 as 0.0129.
+  image.pixels = {Rgb(0.2158605f), Rgb(-1.f, 2.f, std::nanf("")), Rgb(0.001f)};
   ASSERT_TRUE(write_image(path("a.png"), image));
   const auto stored = read_float_image(path("a.png"), PngValues::as_stored);
   ASSERT_TRUE(stored) << stored.error().line();

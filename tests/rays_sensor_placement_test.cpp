@@ -49,6 +49,23 @@ TEST(SensorPlacement, InACornerTheSurfaceThatFacesAlongTheNormalIsTaken) {
   EXPECT_EQ(wall.normal, Vec3(1.f, 0.f, 0.f));
 }
 
+TEST(SensorPlacement, OfAStackThinnerThanRoundingTheOutermostLayerIsRead) {
+  QuadScene quads = room();  // rounding: 10 m * 2^-17 = 0.076 mm
+  const MaterialId paper = quads.material(0.8f);
+  quads.quad({2.f, 2e-4f, 2.f}, {0.f, 0.f, 4.f}, {4.f, 0.f, 0.f}, paper);
+  const Traced t(quads);
+  for (const float height : {0.f, 2e-4f}) {
+    const auto at = place_sensor(t.geometry, t.rays, {3.f, height, 3.f}, kUp);
+    ASSERT_TRUE(at.triangle.valid());
+    EXPECT_EQ(t.geometry.materials[at.triangle], paper);
+  }
+  // 0.6 mm apart they are two surfaces, each with its own light.
+  QuadScene apart = room();
+  apart.quad({2.f, 6e-4f, 2.f}, {0.f, 0.f, 4.f}, {4.f, 0.f, 0.f}, apart.material(0.8f));
+  const Traced two(apart);
+  EXPECT_EQ(place_sensor(two.geometry, two.rays, {3.f, 0.f, 3.f}, kUp).position.y, 0.f);
+}
+
 TEST(SensorPlacement, FarFromAnySurfaceASensorHangsInTheAir) {
   const Traced t(room());
   const Vec3 slanted = glm::normalize(Vec3(1.f, 2.f, 3.f));

@@ -19,10 +19,17 @@ constexpr int kDefaultWidth = 1280, kDefaultHeight = 720;
 constexpr int kLargestSide = 32768;
 constexpr float kLargestEv = 60.f;
 
-const std::map<std::string, ToneMap> kToneMaps = {{"none", ToneMap::none},
-                                                  {"filmic", ToneMap::filmic},
-                                                  {"agx", ToneMap::agx},
-                                                  {"neutral", ToneMap::neutral}};
+ToneMap to_tone_map(const std::string& name) {
+  static const std::map<std::string, ToneMap> maps = {{"none", ToneMap::none},
+                                                      {"filmic", ToneMap::filmic},
+                                                      {"agx", ToneMap::agx},
+                                                      {"neutral", ToneMap::neutral}};
+  const auto found = maps.find(name);
+  if (found == maps.end())
+    throw CLI::ValidationError("--tone-map",
+                               "'" + name + "' is none of none, filmic, agx, neutral");
+  return found->second;
+}
 
 template <class Number>
 std::optional<Number> to_number(std::string_view text) {
@@ -68,8 +75,11 @@ void add_view_arguments(CLI::App& command, ViewArguments& arguments) {
       .add_option("--exposure", arguments.exposure, "stops by which a PNG is brightened, or auto")
       ->type_name("EV")
       ->capture_default_str();
-  command.add_option("--tone-map", arguments.tone_map, "how a PNG holds bright light")
-      ->transform(CLI::CheckedTransformer(kToneMaps))
+  command
+      .add_option_function<std::string>(
+          "--tone-map",
+          [&arguments](const std::string& name) { arguments.tone_map = to_tone_map(name); },
+          "how a PNG holds bright light")
       ->type_name("none|filmic|agx|neutral")
       ->default_str("agx");
   command

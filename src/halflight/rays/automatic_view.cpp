@@ -4,35 +4,44 @@
 #include <vector>
 
 #include "halflight/base/parallel.h"
-#include "halflight/rays/camera_rays.h"
 #include "halflight/rays/sampling.h"
 
 namespace halflight {
 namespace {
 
-constexpr std::size_t kEyes = 256;
-constexpr int kDirections = 8;
-constexpr int kRaysPerSide = 10;      // of the square grid that judges a view
-constexpr float kPitch = -0.1f;       // radians: a little downwards
-constexpr float kFieldOfView = 0.9f;  // radians
-constexpr float kLampShare = 0.25f;   // what seeing a light is worth against seeing a lit surface
+constexpr std::size_t kPoints = 512;
+constexpr int kDirections = 16;
+constexpr float kPitch = -0.15f;      // radians: a little downwards
+constexpr float kFieldOfView = 0.8f;  // radians
+constexpr float kPicture = 0.9f;      // share of the picture's half width that counts as inside
+constexpr float kTooNear = 0.2f;  // of the median free distance: things that would fill the view
+constexpr std::uint32_t kLightSamples = 8;
 
-struct Eye {
-  Vec3 position{0.f};
+struct Place {
+  SurfacePoint surface;
+  Vec3 eye{0.f};     // in the open space before the surface
   float room = 0.f;  // free distance before the surface, metres
+  bool is_lit = false;
 };
 
-// Half way through the open space before a random point of a random triangle.
-Eye eye_before_surface(const PathTracer& tracer, std::uint64_t seed) {
-  const Geometry& g = tracer.world().geometry;
-  const TriangleId t(hash(seed, 1) % g.triangles.size());
-  RayHit start{t, uniform_triangle(random_shift(seed)), 0.f, (hash(seed, 2) & 1u) == 0};
-  const SurfacePoint from = surface_point(g, start);
-  const Vec3 origin = tracer.world().rays.lift(from.position, from.normal);
-  const float farthest = g.bounds.diagonal();
-  const auto hit = tracer.world().rays.closest_hit(origin, from.normal, farthest, seed);
-  const float room = hit ? hit->distance : farthest;
-  return {origin + 0.5f * room * from.normal, room};
+Place random_place(const PathTracer& tracer, std::uint64_t seed) {
+  const auto& [scene, geometry, rays] = tracer.world();
+  const TriangleId t(hash(seed, 1) % geometry.triangles.size());
+  const RayHit hit{t, uniform_triangle(random_shift(seed)), 0.f, (hash(seed, 2) & 1u) == 0};
+  Place place;
+  place.surface = surface_point(geometry, hit);
+  const Vec3 origin = rays.lift(place.surface.position, place.surface.normal);
+  const float farthest = geometry.bounds.diagonal();
+  const auto opposite = rays.closest_hit(origin, place.surface.normal, farthest, seed);
+  place.room = opposite ? opposite->distance : farthest;
+  const float share = 0.3f + 0.65f * to_unit_float(hash(seed, 3));
+  place.eye = origin + share * place.room * place.surface.normal;
+  // Lamps and sky domes are seen anyway: they are not what a view is taken for.
+  if (scene.materials[geometry.materials[t]].emits()) return place;
+  const IrradianceEstimate e =
+      tracer.estimate_irradiance(place.surface.position, place.surface.normal, kLightSamples, seed);
+  place.is_lit = max_component(e.mean) > 0.f;
+  return place;
 }
 
 PlacedCamera look(const Vec3& position, int direction) {
@@ -45,51 +54,59 @@ PlacedCamera look(const Vec3& position, int direction) {
   return camera;
 }
 
-// (different triangles + all) x (lit surfaces, near ones counting less than far ones).
-float judge(const PathTracer& tracer, const PlacedCamera& camera, float comfortable_distance,
-            std::uint64_t seed) {
-  const CameraRays pixels(camera, kRaysPerSide, kRaysPerSide);
-  std::vector<TriangleId> seen;
-  float worth = 0.f;
-  for (int i = 0; i < kRaysPerSide * kRaysPerSide; ++i) {
-    const CameraRay ray = pixels.through(Vec2(i % kRaysPerSide, i / kRaysPerSide) + 0.5f);
-    const auto hit =
-        tracer.world().rays.closest_hit(ray.origin, ray.direction, kInfinity, hash(seed, i));
-    if (!hit) continue;
-    const bool is_lamp = max_component(tracer.emitters().radiance(hit->triangle, hit->barycentric,
-                                                                  hit->front)) > 0.f;
-    PathSampler sampler(seed, static_cast<std::uint32_t>(i));
-    const Rgb arriving = tracer.radiance(ray.origin, ray.direction, sampler);
-    if (!(max_component(arriving) > 0.f)) continue;
-    if (!is_lamp) seen.push_back(hit->triangle);
-    worth += (is_lamp ? kLampShare : 1.f) * hit->distance / (hit->distance + comfortable_distance);
+bool is_in_picture(const PlacedCamera& camera, const Vec3& point) {
+  const Vec3 offset = point - camera.position;
+  const Vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
+  const float depth = glm::dot(offset, camera.forward);
+  const float reach = kPicture * std::tan(0.5f * camera.vertical_fov) * depth;
+  return depth > 0.f && std::abs(glm::dot(offset, right)) < reach &&
+         std::abs(glm::dot(offset, glm::cross(right, camera.forward))) < reach;
+}
+
+struct Choice {
+  PlacedCamera camera;
+  int points_shown = -1;
+};
+
+Choice best_direction(const RayScene& rays, const std::vector<Place>& places, const Vec3& eye,
+                      float least_distance) {
+  std::vector<Vec3> visible;
+  for (const Place& place : places) {
+    const auto& [position, normal] = place.surface;
+    if (!place.is_lit || glm::dot(normal, eye - position) <= 0.f) continue;
+    if (glm::distance(eye, position) < least_distance) continue;
+    if (rays.transmittance(eye, rays.lift(position, normal)) > 0.5f) visible.push_back(position);
   }
-  std::sort(seen.begin(), seen.end());
-  const auto different = std::unique(seen.begin(), seen.end()) - seen.begin();
-  return worth * (static_cast<float>(different) + kRaysPerSide * kRaysPerSide);
+  Choice best;
+  for (int direction = 0; direction < kDirections; ++direction) {
+    const PlacedCamera camera = look(eye, direction);
+    const auto shown = std::count_if(visible.begin(), visible.end(), [&](const Vec3& point) {
+      return is_in_picture(camera, point);
+    });
+    if (shown > best.points_shown) best = {camera, static_cast<int>(shown)};
+  }
+  return best;
 }
 
 }  // namespace
 
 PlacedCamera automatic_view(const PathTracer& tracer, std::uint64_t seed) {
   if (tracer.world().geometry.triangles.empty()) return {};
-  std::vector<Eye> eyes(kEyes);
-  parallel_for(kEyes, 8,
-               [&](std::size_t i) { eyes[i] = eye_before_surface(tracer, hash(seed, i)); });
+  std::vector<Place> places(kPoints);
+  parallel_for(kPoints, 8, [&](std::size_t i) { places[i] = random_place(tracer, hash(seed, i)); });
   std::vector<float> rooms;
-  for (const Eye& eye : eyes) rooms.push_back(eye.room);
-  std::nth_element(rooms.begin(), rooms.begin() + kEyes / 2, rooms.end());
-  const float comfortable_distance = 0.5f * rooms[kEyes / 2];
+  for (const Place& place : places) rooms.push_back(place.room);
+  std::nth_element(rooms.begin(), rooms.begin() + kPoints / 2, rooms.end());
+  const float least_distance = kTooNear * rooms[kPoints / 2];
 
-  std::vector<float> scores(kEyes * kDirections);
-  parallel_for(scores.size(), 8, [&](std::size_t i) {
-    const PlacedCamera camera =
-        look(eyes[i / kDirections].position, static_cast<int>(i % kDirections));
-    scores[i] = judge(tracer, camera, comfortable_distance, hash(seed, kEyes + i));
+  std::vector<Choice> choices(kPoints);
+  parallel_for(kPoints, 8, [&](std::size_t i) {
+    choices[i] = best_direction(tracer.world().rays, places, places[i].eye, least_distance);
   });
-  const auto best =
-      static_cast<std::size_t>(std::max_element(scores.begin(), scores.end()) - scores.begin());
-  return look(eyes[best / kDirections].position, static_cast<int>(best % kDirections));
+  return std::max_element(
+             choices.begin(), choices.end(),
+             [](const Choice& l, const Choice& r) { return l.points_shown < r.points_shown; })
+      ->camera;
 }
 
 }  // namespace halflight
