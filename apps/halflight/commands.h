@@ -23,5 +23,7 @@ int fail(const Error& error);
 
 // Each registers a sub-command; its callback stores the exit status in `status`.
 void add_inspect(CLI::App& cli, int& status);
+void add_reference(CLI::App& cli, int& status);
+void add_render(CLI::App& cli, int& status);
 
 }  // namespace halflight::app

@@ -15,6 +15,9 @@ int main(int argc, char** argv) {
   CLI::App cli{"Lights diffuse 3-D scenes without noise.", "halflight"};
   cli.require_subcommand(1);
   int status = halflight::app::kGoalMet;
+  halflight::app::add_inspect(cli, status);
+  halflight::app::add_reference(cli, status);
+  halflight::app::add_render(cli, status);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -13,8 +13,8 @@ namespace halflight {
 // A place on a surface where light is read, on the side that the normal points to.
 struct ReadingPoint {
   Vec3 position{0.f};
-  Vec3 normal{0.f, 1.f, 0.f};         // unit; may be a shading normal
-  TriangleId triangle;                // the surface it lies on; invalid: none in particular
+  Vec3 normal{0.f, 1.f, 0.f};  // unit; may be a shading normal
+  TriangleId triangle;         // the surface it lies on; invalid: none in particular
 };
 
 // Irradiance E = direct + indirect, W/m2 (or lux), at one point.

@@ -1,7 +1,7 @@
 #include "halflight/rays/ray_scene.h"
 
+#include <algorithm>
 #include <array>
-
 #include <string>
 
 #include <embree3/rtcore.h>
@@ -169,6 +169,24 @@ std::optional<RayHit> RayScene::closest_hit(const Vec3& origin, const Vec3& dire
   const Vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
   hit.front = glm::dot(normal, direction) < 0.f;
   return hit;
+}
+
+std::vector<TriangleId> RayScene::triangles_near(const Vec3& point, float radius) const {
+  struct Found {
+    const Impl* impl;
+    std::vector<TriangleId> triangles;
+  } found{impl_.get(), {}};
+  RTCPointQuery query{point.x, point.y, point.z, 0.f, radius};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  const auto collect = [](RTCPointQueryFunctionArguments* args) {
+    auto* to = static_cast<Found*>(args->userPtr);
+    to->triangles.push_back(to->impl->triangles[args->geomID][args->primID]);
+    return false;  // the radius stays as it is
+  };
+  rtcPointQuery(impl_->scene, &query, &context, collect, &found);
+  std::sort(found.triangles.begin(), found.triangles.end());
+  return std::move(found.triangles);
 }
 
 const char* RayScene::instruction_set() { return kInstructionSet; }

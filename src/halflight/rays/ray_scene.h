@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "halflight/base/vec.h"
 #include "halflight/scene/geometry.h"
@@ -34,6 +35,9 @@ class RayScene {
   // by a hash of the seed and the triangle, so that the answer is repeatable.
   std::optional<RayHit> closest_hit(const Vec3& origin, const Vec3& direction, float max_distance,
                                     std::uint64_t seed) const;
+
+  // Triangles that come within `radius` of the point, and perhaps a few more; in rising order.
+  std::vector<TriangleId> triangles_near(const Vec3& point, float radius) const;
 
   // Lifts a point off its surface, on the side that the unit normal n points to, by more than the
   // rounding error of coordinates of this scene.

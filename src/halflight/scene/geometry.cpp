@@ -175,7 +175,7 @@ float opacity_at(const Scene& scene, const Geometry& g, TriangleId t, Vec2 baryc
   const Material& m = scene.materials[g.materials[t]];
   float alpha = m.alpha;
   if (m.alpha_texture.valid())
-    alpha *= sample(scene, g, m.alpha_texture, t, barycentric).r;
+    alpha *= sample(scene, g, m.alpha_texture, t, barycentric).a;
   else if (m.alpha_mode != AlphaMode::opaque)
     alpha *= sample(scene, g, m.reflectance_texture, t, barycentric).a;
   if (m.alpha_mode == AlphaMode::opaque) alpha = 1.f;

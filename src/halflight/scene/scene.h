@@ -56,7 +56,7 @@ struct Material {
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha = 1.f;  // base colour alpha, OBJ d
   float alpha_cutoff = 0.5f;
-  TextureRef alpha_texture;  // OBJ map_d (its red channel); glTF alpha is that of reflectance_texture
+  TextureRef alpha_texture;  // OBJ map_d, as its alpha; glTF alpha is that of reflectance_texture
   float transmission = 0.f;  // KHR_materials_transmission; opacity is multiplied by 1 - transmission
   bool double_sided = false;  // emission leaves the back side too
 

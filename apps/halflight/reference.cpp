@@ -1,0 +1,83 @@
+// halflight reference SCENE --points FILE --spp N: path-traced irradiance at sensors.
+#include <memory>
+
+#include "commands.h"
+#include "halflight/base/parallel.h"
+#include "halflight/io/sensors.h"
+#include "halflight/rays/reference_sensors.h"
+#include "scene_arguments.h"
+#include "terminal_progress.h"
+
+namespace halflight::app {
+namespace {
+
+struct ReferenceArguments {
+  SceneArguments scene;
+  std::filesystem::path points;
+  std::filesystem::path points_out;
+  std::uint32_t samples = 0;
+  std::uint64_t seed = 0;
+  int threads = 0;
+};
+
+// Root mean square over the channels.
+float one_number(const Rgb& standard_error) {
+  return std::sqrt(glm::dot(standard_error, standard_error) / 3.f);
+}
+
+Result<void> reference(const ReferenceArguments& arguments) {
+  const auto sensors = read_sensors(arguments.points);
+  if (!sensors) return tl::unexpected(sensors.error());
+  Result<Scene> scene = load(arguments.scene);
+  if (!scene) return tl::unexpected(scene.error());
+  print_warnings(*scene);
+  const World world(std::move(*scene));
+  const PathTracer tracer(world);
+
+  std::vector<WorldSensor> in_world;
+  for (const Sensor& sensor : *sensors) in_world.push_back(to_world(world.scene.to_world, sensor));
+  const Progress progress(terminal_progress());
+  const auto estimates =
+      reference_irradiance(tracer, in_world, arguments.samples, arguments.seed, progress);
+  std::vector<Rgb> means;
+  std::vector<float> errors;
+  for (const IrradianceEstimate& e : estimates) {
+    means.push_back(e.mean);
+    errors.push_back(one_number(e.standard_error));
+  }
+  return write_sensor_table(arguments.points_out, sensor_table(*sensors, means, errors));
+}
+
+}  // namespace
+
+void add_reference(CLI::App& cli, int& status) {
+  auto arguments = std::make_shared<ReferenceArguments>();
+  CLI::App& command = *cli.add_subcommand("reference", "path-traced irradiance at sensors");
+  add_scene_arguments(command, arguments->scene);
+  command
+      .add_option("--points", arguments->points,
+                  "sensors, one x y z nx ny nz a line, in the scene's own coordinates")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("--points-out", arguments->points_out,
+                  "where to write the sensors with Er Eg Eb and their standard error (RMS of the "
+                  "channels); default: standard output")
+      ->type_name("FILE");
+  command.add_option("--spp", arguments->samples, "paths per sensor")
+      ->type_name("N")
+      ->check(CLI::Range(2u, 1u << 30))
+      ->required();
+  command.add_option("--seed", arguments->seed, "picks another set of samples")
+      ->capture_default_str();
+  command.add_option("--threads", arguments->threads, "0: all cores")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command.callback([arguments, &status] {
+    set_thread_count(arguments->threads);
+    const Result<void> done = reference(*arguments);
+    status = done ? kGoalMet : fail(done.error());
+  });
+}
+
+}  // namespace halflight::app

@@ -1,0 +1,54 @@
+#include "halflight/io/atomic_file.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include <unistd.h>
+
+namespace halflight {
+namespace {
+
+struct CloseFile {
+  void operator()(std::FILE* f) const { std::fclose(f); }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+tl::unexpected<Error> cannot_write(const std::filesystem::path& path) {
+  return system_error(std::string("cannot write: ") + std::strerror(errno), path.string(),
+                      "check that the folder exists, is writable and has room");
+}
+
+bool write_all(std::FILE* f, std::span<const std::byte> bytes) {
+  return std::fwrite(bytes.data(), 1, bytes.size(), f) == bytes.size() && std::fflush(f) == 0;
+}
+
+}  // namespace
+
+Result<void> write_file_atomically(const std::filesystem::path& path,
+                                   std::span<const std::byte> bytes) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    const File f(std::fopen(path.c_str(), "wb"));
+    if (!f || !write_all(f.get(), bytes)) return cannot_write(path);
+    return {};
+  }
+
+  std::filesystem::path beside = path;
+  beside += ".partial-" + std::to_string(::getpid());
+  File f(std::fopen(beside.c_str(), "wb"));
+  if (!f) return cannot_write(path);
+  bool written = write_all(f.get(), bytes) && ::fsync(::fileno(f.get())) == 0;
+  f.reset();
+  written = written && std::rename(beside.c_str(), path.c_str()) == 0;
+  if (!written) {
+    const auto error = cannot_write(path);
+    std::filesystem::remove(beside, ignored);
+    return error;
+  }
+  return {};
+}
+
+}  // namespace halflight

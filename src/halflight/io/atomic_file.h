@@ -1,0 +1,18 @@
+// Output files appear whole or not at all.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+#include "halflight/base/result.h"
+
+namespace halflight {
+
+// Writes beside `path`, then renames over it: a reader sees the old bytes or all of the new ones,
+// also when the program is killed. Something that is no regular file (a pipe, /dev/stdout) is
+// written to as it is.
+Result<void> write_file_atomically(const std::filesystem::path& path,
+                                   std::span<const std::byte> bytes);
+
+}  // namespace halflight

@@ -1,0 +1,45 @@
+// Reads PNG, JPEG, TGA and BMP pictures to 8-bit RGBA.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "halflight/base/result.h"
+
+namespace halflight {
+
+// A picture above this size is refused before memory is taken (16384 x 8192: 0.5 GB): a flat PNG
+// of a few kilobytes can claim any size.
+inline constexpr std::size_t kMaxTexels = std::size_t{1} << 27;
+
+struct Image8 {
+  int width = 0;
+  int height = 0;
+  std::vector<std::array<std::uint8_t, 4>> texels;  // row 0 on top; sRGB colour, linear alpha
+};
+
+enum class ImageFormat { png, jpeg, other };
+
+// By the first bytes, whatever the file is called.
+ImageFormat image_format(std::span<const std::uint8_t> bytes);
+// "image/png", "image/jpeg"; empty for other formats.
+std::string mime_type(ImageFormat format);
+
+// `where` names the picture in messages.
+Result<Image8> decode_image(std::span<const std::uint8_t> bytes, const std::string& where);
+Result<Image8> read_image(const std::filesystem::path& path);
+
+// One decoder each; decode_image chooses.
+Result<Image8> decode_png(std::span<const std::uint8_t> bytes, const std::string& where);
+Result<Image8> decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& where);
+Result<Image8> decode_tga_or_bmp(std::span<const std::uint8_t> bytes, const std::string& where);
+
+// Nothing when width x height can be held.
+Result<void> check_image_size(std::size_t width, std::size_t height, const std::string& where);
+
+}  // namespace halflight

@@ -1,0 +1,20 @@
+// Cuts polygons of any shape into triangles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "halflight/base/vec.h"
+
+namespace halflight {
+
+// Appends corners.size() - 2 triangles, as indices into `corners`, wound like the polygon. The
+// polygon may be concave and may touch itself (a bridge to a hole); it is seen along its mean
+// normal (Newell), so slightly bent ones work too. One that crosses itself or has no area still
+// gives that many triangles, some of them degenerate or overlapping.
+void triangulate_polygon(std::span<const Vec3> corners,
+                         std::vector<std::array<std::uint32_t, 3>>& triangles);
+
+}  // namespace halflight

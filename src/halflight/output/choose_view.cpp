@@ -1,0 +1,81 @@
+#include "halflight/output/choose_view.h"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace halflight {
+namespace {
+
+constexpr float kDefaultFov = 45.f;  // degrees
+
+template <class Number>
+std::optional<Number> whole_number(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+// All parts between commas as finite numbers, or nothing.
+std::optional<std::vector<float>> number_list(std::string_view text) {
+  std::vector<float> values;
+  for (;;) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const auto value = whole_number<float>(text.substr(0, comma));
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    values.push_back(*value);
+    if (comma == text.size()) return values;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+Result<View> given_view(const std::vector<float>& v, const Mat4& to_world) {
+  if (v.size() != 6 && v.size() != 7)
+    return input_error(
+        fmt::format("a view has 6 or 7 numbers, not {}", v.size()), "--camera",
+        "px,py,pz,tx,ty,tz,fov: position, target, vertical field of view in degrees");
+  View view;
+  const Vec3 target = transform_point(to_world, {v[3], v[4], v[5]});
+  view.camera.position = transform_point(to_world, {v[0], v[1], v[2]});
+  if (!(glm::distance(target, view.camera.position) > 0.f))
+    return input_error("position and target of the view are the same point", "--camera");
+  view.camera.forward = glm::normalize(target - view.camera.position);
+  const float degrees = v.size() == 7 ? v[6] : kDefaultFov;
+  if (!(degrees > 0.f && degrees < 180.f))
+    return input_error("the field of view must lie between 0 and 180 degrees", "--camera");
+  view.camera.vertical_fov = degrees * kPi / 180.f;
+  return view;
+}
+
+std::string known_cameras(const Geometry& geometry) {
+  if (geometry.cameras.empty()) return "the scene has no camera: use auto, a view or a JSON file";
+  std::string names;
+  for (std::size_t i = 0; i < geometry.cameras.size(); ++i)
+    names += fmt::format("{}{} '{}'", i ? ", " : "the scene has ", i, geometry.cameras[i].name);
+  return names;
+}
+
+}  // namespace
+
+Result<View> choose_view(const std::string& wish, const Scene& scene, const Geometry& geometry,
+                         const std::function<PlacedCamera()>& automatic) {
+  const auto& cameras = geometry.cameras;
+  if (wish == "auto") return View{cameras.empty() ? automatic() : cameras.front()};
+  const auto named = std::find_if(cameras.begin(), cameras.end(),
+                                  [&](const PlacedCamera& c) { return c.name == wish; });
+  if (named != cameras.end()) return View{*named};
+  if (const auto index = whole_number<std::size_t>(wish); index && *index < cameras.size())
+    return View{cameras[*index]};
+  if (wish.ends_with(".json")) return read_camera_file(wish, scene.to_world);
+  if (const auto numbers = number_list(wish); numbers && numbers->size() > 1)
+    return given_view(*numbers, scene.to_world);
+  return input_error(fmt::format("there is no camera '{}'", wish), "--camera",
+                     known_cameras(geometry));
+}
+
+}  // namespace halflight

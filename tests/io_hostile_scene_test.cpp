@@ -1,0 +1,165 @@
+// Files made to break the reader: it must answer with a scene or one line, soon and in little
+// memory.
+#include <chrono>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "gltf_builder.h"
+#include "halflight/io/load_scene.h"
+#include "halflight/io/read_file.h"
+#include "halflight/scene/geometry.h"
+#include "shared_scenes.h"
+#include "temporary_folder.h"
+
+namespace halflight {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+void expect_one_line(const Result<Scene>& scene) {
+  if (scene) return;
+  EXPECT_FALSE(scene.error().what.empty());
+  EXPECT_THAT(scene.error().what, testing::Not(HasSubstr("\n")));
+}
+
+std::string refusal(const TemporaryFolder& folder, const std::string& glb) {
+  const Result<Scene> scene = load_scene(folder.write("scene.glb", glb));
+  return scene ? "" : scene.error().line();
+}
+
+TEST(HostileScene, DeepNestingAndLongChainsOfNodesAreNoTrouble) {
+  const TemporaryFolder folder;
+  const std::string deep = R"({"asset":{"version":"2.0","extras":)" + std::string(500000, '[') +
+                           std::string(500000, ']') + "}}";
+  EXPECT_TRUE(load_scene(folder.write("deep.gltf", deep)));
+  EXPECT_FALSE(load_scene(folder.write("open.gltf", std::string(500000, '['))));
+
+  GltfBuilder chain;
+  chain.add_triangle();
+  for (int i = 1; i < 100000; ++i) chain.add("nodes", {{"children", {i - 1}}});
+  chain.json["scenes"][0]["nodes"] = {99999};
+  const auto scene = load_scene(folder.write("chain.glb", chain.glb()));
+  ASSERT_TRUE(scene) << scene.error().line();
+  EXPECT_EQ(flatten(*scene).triangles.size(), 1u);
+}
+
+TEST(HostileScene, SmallFilesThatClaimGigabytesAreRefused) {
+  const TemporaryFolder folder;
+  GltfBuilder zeros;
+  zeros.add_triangle();
+  zeros.json["accessors"][0]["count"] = 100000000;
+  zeros.json["accessors"][0].erase("bufferView");
+  EXPECT_THAT(refusal(folder, zeros.glb()), HasSubstr("without data"));
+
+  GltfBuilder instances;
+  instances.add_triangle();
+  const auto shift =
+      instances.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", 16000000}});
+  instances.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", shift}};
+  EXPECT_THAT(refusal(folder, instances.glb()), HasSubstr("more than"));
+
+  GltfBuilder repeated;
+  const auto positions = repeated.add_positions(std::vector<float>(300000, 0.5f));
+  json primitives = json::array();
+  for (int i = 0; i < 2000; ++i) primitives.push_back({{"attributes", {{"POSITION", positions}}}});
+  repeated.add("meshes", {{"primitives", primitives}});
+  repeated.add_root({{"mesh", 0}});
+  EXPECT_THAT(refusal(folder, repeated.glb()), HasSubstr("vertices"));
+
+  GltfBuilder placed;
+  placed.add("meshes",
+             {{"primitives",
+               {{{"attributes",
+                  {{"POSITION", placed.add_positions(std::vector<float>(300000, 0.5f))}}}}}}});
+  for (int i = 0; i < 2000; ++i) placed.add_root({{"mesh", 0}});
+  EXPECT_THAT(refusal(folder, placed.glb()), HasSubstr("placed vertices"));
+}
+
+TEST(HostileScene, PicturesOutsideTheirBufferAreRefused) {
+  const TemporaryFolder folder;
+  GltfBuilder gltf;
+  gltf.add_triangle({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  gltf.json["textures"] = {{{"source", 0}}};
+  gltf.json["images"] = {{{"bufferView", 1}, {"mimeType", "image/png"}}};
+  gltf.add("bufferViews", {{"buffer", 0}, {"byteOffset", 1000000000}, {"byteLength", 100}});
+  EXPECT_THAT(refusal(folder, gltf.glb()), HasSubstr("bufferViews/1"));
+}
+
+TEST(HostileScene, DevicesAndFoldersAreNotScenes) {
+  const TemporaryFolder folder;
+  GltfBuilder gltf;
+  gltf.add_triangle();
+  gltf.json["buffers"] = {{{"byteLength", 36}, {"uri", "../../../../../../../../dev/zero"}}};
+  EXPECT_THAT(refusal(folder, gltf.glb()), HasSubstr("not a file"));
+  std::filesystem::create_directory(folder.path() / "folder.obj");
+  EXPECT_FALSE(load_scene(folder.path() / "folder.obj"));
+}
+
+// Cuts, flips and repeats bytes of `original`.
+std::string spoiled(const std::string& original, std::mt19937& random) {
+  std::string text = original;
+  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
+  for (std::size_t i = 1 + below(6); i > 0 && !text.empty(); --i) {
+    const std::size_t at = below(text.size());
+    switch (below(4)) {
+      case 0:
+        text[at] = static_cast<char>(random());
+        break;
+      case 1:
+        text[at] = "0123456789-,.e[]{}\"/ \n"[below(22)];
+        break;
+      case 2:
+        text.erase(at, 1 + below(8));
+        break;
+      default:
+        text.insert(at, text.substr(below(text.size()), 1 + below(16)));
+        break;
+    }
+  }
+  return text;
+}
+
+// GLB files are spoiled inside; their header must keep its length to get any further.
+void repair_glb_length(std::string& file) {
+  if (file.size() < 12) return;
+  const auto length = static_cast<std::uint32_t>(file.size());
+  std::memcpy(file.data() + 8, &length, sizeof length);
+}
+
+TEST(HostileScene, SpoiledSamplesGiveASceneOrOneLine) {
+  HALFLIGHT_NEEDS_SHARED_SCENES();
+  const TemporaryFolder folder;
+  std::mt19937 random(3);
+  for (const char* name :
+       {"gltf-samples/BoxInterleaved/glTF-Embedded/BoxInterleaved.gltf",
+        "gltf-samples/SimpleSparseAccessor/glTF-Embedded/SimpleSparseAccessor.gltf",
+        "gltf-samples/BoxVertexColors/glTF-Binary/BoxVertexColors.glb",
+        "gltf-samples/Cameras/glTF-Embedded/Cameras.gltf", "obj-samples/tinyobj/cornell_box.obj",
+        "obj-samples/assimp/concave_polygon.obj"}) {
+    SCOPED_TRACE(name);
+    const auto bytes = read_file(shared_scenes() / name);
+    ASSERT_TRUE(bytes);
+    const std::string original(bytes->begin(), bytes->end());
+    const std::string extension = std::filesystem::path(name).extension();
+    std::size_t read = 0, refused = 0;
+    for (int i = 0; i < 300; ++i) {
+      std::string text = spoiled(original, random);
+      if (extension == ".glb") repair_glb_length(text);
+      const auto scene = load_scene(folder.write("spoiled" + extension, text));
+      expect_one_line(scene);
+      if (scene) flatten(*scene);
+      ++(scene ? read : refused);
+    }
+    EXPECT_GT(read, 0u);
+    if (extension != ".obj") {
+      EXPECT_GT(refused, 0u);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace halflight
