@@ -25,5 +25,6 @@ int fail(const Error& error);
 void add_inspect(CLI::App& cli, int& status);
 void add_reference(CLI::App& cli, int& status);
 void add_render(CLI::App& cli, int& status);
+void add_solve(CLI::App& cli, int& status);
 
 }  // namespace halflight::app
