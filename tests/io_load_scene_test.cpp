@@ -108,6 +108,41 @@ TEST(LoadScene, ScenesHaveTheirTrianglesAndEmittedPower) {
   EXPECT_EQ(scenes, 14u);
 }
 
+// Reflectance of the surface nearest to a point in the plane of the sample's quads.
+float brightness_at(const Scene& scene, const Geometry& g, Vec3 point) {
+  float nearest = kInfinity, found = -1.f;
+  for (std::size_t i = 0; i < g.triangles.size(); ++i) {
+    const auto [a, b, c] = g.corners(TriangleId(i));
+    for (int u = 0; u <= 64; ++u)
+      for (int v = 0; u + v <= 64; ++v) {
+        const Vec2 bary(static_cast<float>(u) / 64.f, static_cast<float>(v) / 64.f);
+        const Vec3 at = a + bary.x * (b - a) + bary.y * (c - a);
+        if (glm::distance(at, point) >= nearest) continue;
+        nearest = glm::distance(at, point);
+        found = average(reflectance_at(scene, g, TriangleId(i), bary));
+      }
+  }
+  return found;
+}
+
+// Khronos' test asset: the quad shows a black arrow from its upper left corner, which must point at
+// the mark for readers that turn the right way, 67.5 degrees downwards.
+TEST(LoadScene, TurnedTexturesPointAtTheMarkOfTheTestAsset) {
+  HALFLIGHT_NEEDS_SHARED_SCENES();
+  const auto scene =
+      load_scene(shared_scenes() / "gltf-samples/textureTransform/TextureTransformTest.gltf");
+  ASSERT_TRUE(scene) << scene.error().line();
+  const Geometry g = flatten(*scene);
+  const Vec3 corner(-1.1f - 0.5f, -0.55f + 0.5f, 0.f);
+  const auto along = [&](float degrees) {
+    const float angle = degrees * kPi / 180.f;
+    return brightness_at(*scene, g, corner + 0.6f * Vec3(std::cos(angle), -std::sin(angle), 0.f));
+  };
+  EXPECT_LT(along(67.5f), 0.1f);
+  EXPECT_GT(along(45.f), 0.5f);
+  EXPECT_GT(along(22.5f), 0.5f);
+}
+
 TEST(LoadScene, BadFilesAreRefusedOrToleratedAsListed) {
   HALFLIGHT_NEEDS_SHARED_SCENES();
   std::ifstream manifest(shared_scenes() / "bad" / "MANIFEST.tsv");
