@@ -23,5 +23,6 @@ int fail(const Error& error);
 
 // Each registers a sub-command; its callback stores the exit status in `status`.
 void add_inspect(CLI::App& cli, int& status);
+void add_scene(CLI::App& cli, int& status);
 
 }  // namespace halflight::app

@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   CLI::App cli{"Lights diffuse 3-D scenes without noise.", "halflight"};
   cli.require_subcommand(1);
   int status = halflight::app::kGoalMet;
+  halflight::app::add_scene(cli, status);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
