@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "gltf_check.h"
 #include "halflight/scene/procedural/catalogue.h"
 
 namespace halflight {
@@ -35,7 +36,8 @@ class SceneCommand : public testing::Test {
     std::ifstream file(folder_ / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
-  bool exists(const std::string& name) const { return fs::exists(folder_ / name); }
+  bool exists(const std::string& name) const { return fs::exists(path(name)); }
+  fs::path path(const std::string& name) const { return folder_ / name; }
 
  private:
   fs::path folder_;
@@ -55,6 +57,14 @@ TEST_F(SceneCommand, WritesABinaryGltfNamedAfterTheScene) {
   EXPECT_EQ(read("out"), "");
 }
 
+TEST_F(SceneCommand, EveryDefaultSceneIsValidGltf) {
+  if (!test::have_gltf_validator()) GTEST_SKIP() << "the glTF validator is not installed";
+  for (const Recipe& recipe : scene_recipes()) {
+    EXPECT_EQ(run(recipe.name), 0);
+    EXPECT_TRUE(test::is_valid_gltf(path(recipe.name + ".glb"))) << recipe.name;
+  }
+}
+
 TEST_F(SceneCommand, TheSameParametersGiveTheSameBytes) {
   EXPECT_EQ(run("office --count 50 --seed 3 -o a.glb"), 0);
   EXPECT_EQ(run("office --count 50 --seed 3 -o b.glb"), 0);
@@ -65,6 +75,8 @@ TEST_F(SceneCommand, TheSameParametersGiveTheSameBytes) {
 
 TEST_F(SceneCommand, RejectsWhatItCannotBuildAndWritesNothing) {
   EXPECT_EQ(run("ballroom"), 1);
+  EXPECT_NE(read("err").find("there is no built-in scene 'ballroom'"), std::string::npos);
+  EXPECT_EQ(run(""), 1);
   EXPECT_EQ(run("office --count -3"), 1);
   EXPECT_EQ(run("office --count many"), 1);
   EXPECT_EQ(run("furnace --reflectance 1.5"), 1);

@@ -2,6 +2,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <fmt/format.h>
+
 #include "commands.h"
 #include "halflight/io/write_gltf.h"
 #include "halflight/scene/procedural/catalogue.h"
@@ -21,6 +23,11 @@ int write(const Request& request) {
   return kGoalMet;
 }
 
+CLI::Validator range_of(const Knob& knob) {
+  CLI::Range range(knob.least, knob.most);
+  return range.description(fmt::format("{:g} to {:g}", knob.least, knob.most));
+}
+
 void add_recipe(CLI::App& scene, Recipe recipe, int& status) {
   const auto request = std::make_shared<Request>(Request{std::move(recipe), {}});
   request->output = request->recipe.name + ".glb";
@@ -29,7 +36,7 @@ void add_recipe(CLI::App& scene, Recipe recipe, int& status) {
   for (const Knob& knob : request->recipe.knobs) {
     const auto add = [&](auto* value) {
       command->add_option("--" + knob.name, *value, knob.meaning)
-          ->check(CLI::Range(knob.least, knob.most))
+          ->check(range_of(knob))
           ->capture_default_str();
     };
     std::visit(add, knob.value);
@@ -46,9 +53,15 @@ void list_recipes() {
 
 void add_scene(CLI::App& cli, int& status) {
   CLI::App* scene = cli.add_subcommand("scene", "Write a built-in scene as GLB");
-  scene->require_subcommand(1);
-  scene->add_subcommand("list", "tell the names of the scenes, one a line")->callback(list_recipes);
+  scene->require_subcommand(0, 1);
+  scene->add_subcommand("list", "names of the scenes, one a line")->callback(list_recipes);
   for (Recipe& recipe : scene_recipes()) add_recipe(*scene, std::move(recipe), status);
+  // What is no scene's name ends up here.
+  const auto unknown = std::make_shared<std::string>();
+  scene->add_option("name", *unknown)->group("");
+  scene->callback([=, &status] {
+    if (scene->get_subcommands().empty()) status = fail(find_recipe(*unknown).error());
+  });
 }
 
 }  // namespace halflight::app

@@ -42,6 +42,7 @@ Result<Recipe> find_recipe(std::string_view name) {
     if (candidate.name == name) return std::move(candidate);
     known += (known.empty() ? "" : ", ") + candidate.name;
   }
+  if (name.empty()) return input_error("name a built-in scene", "", "one of " + known);
   return input_error("there is no built-in scene '" + std::string(name) + "'", "",
                      "choose one of " + known);
 }
