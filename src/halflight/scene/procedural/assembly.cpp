@@ -26,12 +26,12 @@ MaterialId add_emitter(Scene& scene, std::string name, const Rgb& radiance,
   return id;
 }
 
-MeshId add_mesh(Scene& scene, std::string name, MeshParts parts) {
+MeshId add_mesh(Scene& scene, std::string name, MeshParts&& parts) {
   Mesh mesh;
   mesh.name = std::move(name);
   for (auto& [material, primitive] : parts) {
-    primitive.material = material;
     mesh.primitives.push_back(std::move(primitive));
+    mesh.primitives.back().material = material;
   }
   return scene.meshes.push_back(std::move(mesh));
 }

@@ -20,7 +20,7 @@ MaterialId add_emitter(Scene& scene, std::string name, const Rgb& radiance, cons
 
 // The primitives of one mesh, one for each material.
 using MeshParts = std::map<MaterialId, Primitive>;
-MeshId add_mesh(Scene& scene, std::string name, MeshParts parts);
+MeshId add_mesh(Scene& scene, std::string name, MeshParts&& parts);
 
 // Moves to `position` after turning by `turn` radians about +Y and scaling.
 Mat4 placed_at(const Vec3& position, float turn = 0.f, const Vec3& scale = Vec3(1.f));

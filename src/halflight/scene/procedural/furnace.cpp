@@ -17,8 +17,8 @@ void add_cubes(Scene& scene, const FurnaceParameters& p, MaterialId glowing) {
   const MeshId cube = add_mesh(scene, "cube", std::move(parts));
   Random random(hash(static_cast<std::uint64_t>(p.seed), 0));
   for (int i = 0; i < p.boxes; ++i) {
-    const Vec3 cell(static_cast<float>(i % cells), static_cast<float>(i / cells % cells),
-                    static_cast<float>(i / (cells * cells)));
+    const int column = i % cells, row = i / cells % cells, layer = i / (cells * cells);
+    const Vec3 cell(static_cast<float>(column), static_cast<float>(row), static_cast<float>(layer));
     const Vec3 center = (cell + 0.5f) * pitch - Vec3(0.5f * p.side, 0.f, 0.5f * p.side);
     add_node(scene, "cube " + std::to_string(i + 1), cube, placed_at(center, random.angle()));
   }

@@ -84,8 +84,9 @@ MeshId add_phone(Scene& scene, const OfficePalette& p) {
   append_cushion(parts[p.black_plastic], {{-0.085f, 0.0305f, -0.09f}, {-0.035f, 0.06f, 0.09f}},
                  0.02f, 0.01f);
   for (int i = 0; i < 12; ++i) {
-    const float x = -0.01f + 0.026f * static_cast<float>(i % 3);
-    const float z = -0.03f + 0.026f * static_cast<float>(i / 3);
+    const int column = i % 3, row = i / 3;
+    const float x = -0.01f + 0.026f * static_cast<float>(column);
+    const float z = -0.03f + 0.026f * static_cast<float>(row);
     append_box(parts[p.white_plastic], {{x, 0.0305f, z}, {x + 0.018f, 0.035f, z + 0.018f}});
   }
   return add_mesh(scene, "phone", std::move(parts));

@@ -38,9 +38,9 @@ struct Cells {
       : across(static_cast<int>(std::ceil(std::sqrt(static_cast<double>(n))))),
         pitch((kRoom.extent().x - 2.f * kMargin) / static_cast<float>(across)) {}
   Vec3 center(int i) const {
-    const float x = static_cast<float>(i % across) + 0.5f,
-                z = static_cast<float>(i / across) + 0.5f;
-    return kRoom.lower + Vec3(kMargin + pitch * x, 0.f, kMargin + pitch * z);
+    const int column = i % across, row = i / across;
+    const Vec3 cell(static_cast<float>(column) + 0.5f, 0.f, static_cast<float>(row) + 0.5f);
+    return kRoom.lower + Vec3(kMargin, 0.f, kMargin) + pitch * cell;
   }
 };
 
