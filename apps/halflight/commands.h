@@ -26,5 +26,6 @@ void add_inspect(CLI::App& cli, int& status);
 void add_reference(CLI::App& cli, int& status);
 void add_render(CLI::App& cli, int& status);
 void add_solve(CLI::App& cli, int& status);
+void add_scene(CLI::App& cli, int& status);
 
 }  // namespace halflight::app

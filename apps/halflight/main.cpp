@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   halflight::app::add_reference(cli, status);
   halflight::app::add_render(cli, status);
   halflight::app::add_solve(cli, status);
+  halflight::app::add_scene(cli, status);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string_view>
 
 #include "halflight/base/result.h"
 
@@ -14,5 +15,10 @@ namespace halflight {
 // written to as it is.
 Result<void> write_file_atomically(const std::filesystem::path& path,
                                    std::span<const std::byte> bytes);
+
+inline Result<void> write_text_atomically(const std::filesystem::path& path,
+                                          std::string_view text) {
+  return write_file_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
+}
 
 }  // namespace halflight
