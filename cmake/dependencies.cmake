@@ -22,3 +22,4 @@ endforeach()
 # Header-only, used in sources alone: link as $<BUILD_INTERFACE:...> and a consumer needs none.
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
+find_package(tsl-robin-map REQUIRED)

@@ -3,7 +3,7 @@
 #include <tsl/robin_map.h>
 
 #include "halflight/base/parallel.h"
-#include "halflight/output/refine.h"
+#include "halflight/output/refine_mesh.h"
 
 namespace halflight {
 namespace {
@@ -156,7 +156,7 @@ LitMesh build_lit_mesh(const Scene& scene, const Geometry& g, const LightReader&
   const auto shown = choose_shown_sides(scene, g, edges, options.feature_size, counted);
   WorkMesh mesh = make_work_mesh(g, std::move(points), edges, shown, options.feature_size, counted);
   result.mean_irradiance = mean_irradiance(mesh, g);
-  refine(mesh, shown, read, options, max_component(result.mean_irradiance), progress, result);
+  refine_mesh(mesh, shown, read, options, max_component(result.mean_irradiance), progress, result);
   fill_buried_sites(mesh);
   result.primitives = to_primitives(mesh, scene, g);
   for (const LitPrimitive& p : result.primitives) {

@@ -1,4 +1,4 @@
-#include "halflight/output/refine.h"
+#include "halflight/output/refine_mesh.h"
 
 #include <optional>
 
@@ -223,9 +223,9 @@ float longest_side(const WorkMesh& mesh, const Sheet& s) {
 
 }  // namespace
 
-void refine(WorkMesh& mesh, const IdVector<TriangleId, ShownSides>& shown, const LightReader& read,
-            const LitMeshOptions& options, float mean_irradiance, const Progress& progress,
-            LitMesh& result) {
+void refine_mesh(WorkMesh& mesh, const IdVector<TriangleId, ShownSides>& shown,
+                 const LightReader& read, const LitMeshOptions& options, float mean_irradiance,
+                 const Progress& progress, LitMesh& result) {
   Refiner refiner(mesh, options);
   for (std::size_t i = 0; i < mesh.sheets.size(); ++i) {
     const Sheet& sheet = mesh.sheets[SheetId(i)];
