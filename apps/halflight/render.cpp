@@ -1,13 +1,15 @@
-// halflight render SCENE --path-trace SPP: a picture from a camera.
+// halflight render SCENE: a picture from a camera, of the solved light or path-traced.
 #include <memory>
 
 #include "commands.h"
 #include "halflight/base/parallel.h"
 #include "halflight/io/image_write.h"
+#include "halflight/output/lit_mesh.h"
+#include "halflight/output/solution_image.h"
 #include "halflight/rays/automatic_view.h"
 #include "halflight/rays/path_traced_image.h"
 #include "scene_arguments.h"
-#include "terminal_progress.h"
+#include "solve_arguments.h"
 #include "view_arguments.h"
 
 namespace halflight::app {
@@ -15,12 +17,13 @@ namespace {
 
 struct RenderArguments {
   SceneArguments scene;
+  SolveArguments solve;
   ViewArguments view;
-  std::uint32_t samples_per_pixel = 0;
+  std::uint32_t path_trace = 0;  // paths per pixel; 0: show the solved light
+  int samples_per_pixel = 4;
   std::filesystem::path visibility_output;
   std::uint32_t visibility_samples = 64;
   std::uint64_t seed = 0;
-  int threads = 0;
 };
 
 Result<void> check(const RenderArguments& arguments) {
@@ -29,22 +32,43 @@ Result<void> check(const RenderArguments& arguments) {
   return {};
 }
 
+Result<Image> solved_image(const RenderArguments& arguments, std::shared_ptr<const World> world,
+                           const View& view, const Progress& progress) {
+  const Result<SolveOptions> options = resolve(arguments.solve);
+  if (!options) return tl::unexpected(options.error());
+  SolverState state = make_state(world, *options);
+  while (!state.done() && !progress.cancelled()) advance(state, progress);
+  const SolutionReader reader(state, kMeshReading);
+  LitMeshOptions mesh_options;
+  mesh_options.feature_size = state.options.feature_size;
+  const LitMesh mesh = build_lit_mesh(
+      world->scene, world->geometry,
+      [&](std::span<const ReadingPoint> points) { return reader(points); }, mesh_options, progress);
+  return solution_image(state, SolutionReader(state, kPixelReading), mesh,
+                        CameraRays(view.camera, view.width, view.height), view.width, view.height,
+                        arguments.samples_per_pixel, progress);
+}
+
 Result<void> render(const RenderArguments& arguments) {
   if (auto ok = check(arguments); !ok) return ok;
   Result<Scene> scene = load(arguments.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
-  const World world(std::move(*scene));
-  const PathTracer tracer(world);
-  const Result<View> view = choose_view(arguments.view, world.scene, world.geometry,
+  const auto world = make_world(std::move(*scene));
+  const PathTracer tracer(*world);
+  const Result<View> view = choose_view(arguments.view, world->scene, world->geometry,
                                         [&] { return automatic_view(tracer, arguments.seed); });
   if (!view) return tl::unexpected(view.error());
 
   const CameraRays camera(view->camera, view->width, view->height);
-  const Progress progress(terminal_progress());
-  const Image picture = path_traced_image(tracer, camera, view->width, view->height,
-                                          arguments.samples_per_pixel, arguments.seed, progress);
-  if (auto written = write_picture(arguments.view, picture); !written) return written;
+  const Progress progress(progress_listener(arguments.solve));
+  const Result<Image> picture =
+      arguments.path_trace > 0
+          ? path_traced_image(tracer, camera, view->width, view->height, arguments.path_trace,
+                              arguments.seed, progress)
+          : solved_image(arguments, world, *view, progress);
+  if (!picture) return tl::unexpected(picture.error());
+  if (auto written = write_picture(arguments.view, *picture); !written) return written;
   if (arguments.visibility_output.empty()) return {};
   const Image visibility = visibility_image(tracer, camera, view->width, view->height,
                                             arguments.visibility_samples, arguments.seed, progress);
@@ -58,10 +82,13 @@ void add_render(CLI::App& cli, int& status) {
   CLI::App& command = *cli.add_subcommand("render", "picture of a scene from a camera");
   add_scene_arguments(command, arguments->scene);
   add_view_arguments(command, arguments->view);
-  command.add_option("--path-trace", arguments->samples_per_pixel, "paths per pixel")
+  add_solve_arguments(command, arguments->solve);
+  command.add_option("--path-trace", arguments->path_trace, "trace this many paths per pixel instead")
       ->type_name("SPP")
-      ->check(CLI::Range(1u, 1u << 24))
-      ->required();
+      ->check(CLI::Range(1u, 1u << 24));
+  command.add_option("--samples", arguments->samples_per_pixel, "camera rays per pixel of solved light")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   command
       .add_option("--visibility", arguments->visibility_output,
                   "also write the visible share of the direct light of each pixel: .exr or .png")
@@ -73,11 +100,8 @@ void add_render(CLI::App& cli, int& status) {
       ->capture_default_str();
   command.add_option("--seed", arguments->seed, "picks another set of samples")
       ->capture_default_str();
-  command.add_option("--threads", arguments->threads, "0: all cores")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
   command.callback([arguments, &status] {
-    set_thread_count(arguments->threads);
+    set_thread_count(arguments->solve.threads);
     const Result<void> done = render(*arguments);
     status = done ? kGoalMet : fail(done.error());
   });

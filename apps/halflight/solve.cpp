@@ -52,8 +52,9 @@ std::vector<Rgb> read_sensors_at(const SolutionReader& reader, const World& worl
 }
 
 Result<void> write_lit(const std::filesystem::path& path, const SolverState& state,
-                       const SolutionReader& reader, Report& report, const Progress& progress) {
+                       Report& report, const Progress& progress) {
   const World& world = *state.world;
+  const SolutionReader reader(state, kMeshReading);
   LitMeshOptions options;
   options.feature_size = state.options.feature_size;
   const auto start = std::chrono::steady_clock::now();
@@ -98,16 +99,16 @@ Result<int> run(const SolveCommand& command) {
   while (!state.done() && !progress.cancelled()) advance(state, progress);
   report.end_phase("solve", phase);
 
-  const SolutionReader reader(state, {});
   if (!sensors.empty()) {
     phase = std::chrono::steady_clock::now();
-    const std::vector<Rgb> irradiance = read_sensors_at(reader, *world, sensors);
+    const std::vector<Rgb> irradiance =
+        read_sensors_at(SolutionReader(state, {}), *world, sensors);
     auto written = write_sensor_table(command.outputs.points_out, sensor_table(sensors, irradiance));
     if (!written) return tl::unexpected(written.error());
     report.end_phase("sensors", phase);
   }
   if (!command.outputs.lit.empty()) {
-    auto written = write_lit(command.outputs.lit, state, reader, report, progress);
+    auto written = write_lit(command.outputs.lit, state, report, progress);
     if (!written) return tl::unexpected(written.error());
   }
   const int status = interruptible.interrupted() ? kInterrupted

@@ -170,7 +170,7 @@ void ElementTree::split(ElementId cell) {
   elements_[cell].child_count = static_cast<std::uint32_t>(elements_.size()) - first;
 }
 
-SurfacePoint ElementTree::sample(ElementId cell, Vec2 u) const {
+CellPoint ElementTree::sample(ElementId cell, Vec2 u) const {
   const Element& e = elements_[cell];
   const Surface& surface = (*surfaces_)[e.side];
   // The first coordinate picks the piece by area and is stretched to be used again within it.

@@ -45,7 +45,7 @@ struct Fragment {
   float cumulative_area = 0.f;  // within its cell, after this fragment
 };
 
-struct SurfacePoint {
+struct CellPoint {
   Vec3 position{0.f};
   TriangleId triangle;
 };
@@ -74,7 +74,7 @@ class ElementTree {
   float cell_size(ElementId cell) const;
 
   // A point uniform over the area of a cell. u is in [0, 1)^2.
-  SurfacePoint sample(ElementId cell, Vec2 u) const;
+  CellPoint sample(ElementId cell, Vec2 u) const;
   // The leaf cell of a side at a point of its surface; invalid when the side is not live.
   ElementId find_leaf(SideId side, const Vec3& position) const;
   // Calls visit(span of corners in world space) for each convex piece of a cell.

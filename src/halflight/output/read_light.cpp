@@ -13,6 +13,10 @@ Rgb SolutionReader::direct(const Vec3& x, const Vec3& n) const {
   return emitters_.irradiance(x, n, options_.direct) + punctual_irradiance(*state_->world, x, n);
 }
 
+Rgb SolutionReader::sky(const Vec3& x, const Vec3& n) const {
+  return sky_irradiance(*state_->world, x, n, options_.gather_rays, Vec2(0.5f));
+}
+
 Rgb SolutionReader::reflected_radiosity(const RayHit& hit) const {
   const World& world = *state_->world;
   const SideId side = side_of(state_->surfaces->of_triangle[hit.triangle], !hit.front);

@@ -16,6 +16,11 @@ struct ReadOptions {
   DirectLightOptions direct;
 };
 
+// For the many vertices of a lit mesh, and for pixels, several of which share a place.
+inline constexpr ReadOptions kMeshReading{.gather_rays = 64, .direct = {}};
+inline constexpr ReadOptions kPixelReading{
+    .gather_rays = 32, .direct = {.shadow_rays = 8, .penumbra_rays = 16}};
+
 class SolutionReader {
  public:
   // Refers to the state, which must outlive the reader.
@@ -25,6 +30,7 @@ class SolutionReader {
   std::vector<Reading> operator()(std::span<const ReadingPoint> points) const;  // in parallel
 
   Rgb direct(const Vec3& x, const Vec3& n) const;  // emitting surfaces and punctual lights
+  Rgb sky(const Vec3& x, const Vec3& n) const;
   // Solved radiosity less emission of what a ray has hit.
   Rgb reflected_radiosity(const RayHit& hit) const;
 

@@ -13,7 +13,7 @@ constexpr int kSkyRays = 16;  // of each point
 constexpr DirectLightOptions kCellDirectLight{
     .shadow_rays = 2, .penumbra_rays = 4, .largest_group_share = 0.1f, .smallest_angle = 0.01f};
 
-Vec2 barycentric_of(const Geometry& g, const SurfacePoint& p) {
+Vec2 barycentric_of(const Geometry& g, const CellPoint& p) {
   const auto [a, b, c] = g.corners(p.triangle);
   const Vec3 n = glm::cross(b - a, c - a);
   const float area = glm::dot(n, n);
@@ -64,7 +64,7 @@ void evaluate_material(SolverState& state, ElementId cell) {
   const std::uint32_t samples = textured ? kTextureSamples : 1;
   Rgb reflectance(0.f), emission(0.f);
   for (std::uint32_t k = 0; k < samples; ++k) {
-    const SurfacePoint p = tree.sample(cell, r2_sequence(k));
+    const CellPoint p = tree.sample(cell, r2_sequence(k));
     const Vec2 b = barycentric_of(g, p);
     const float opacity = opacity_at(scene, g, p.triangle, b);
     reflectance += opacity * reflectance_at(scene, g, p.triangle, b);
