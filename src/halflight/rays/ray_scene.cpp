@@ -33,8 +33,7 @@ void attenuate(const RTCFilterFunctionNArguments* args) {
   if (args->valid[0] != -1) return;
   const TriangleId t = context->triangles[RTCHitN_primID(args->hit, 1, 0)];
   const Vec2 barycentric(RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0));
-  context->transmittance *=
-      1.f - opacity_at(*context->scene, *context->geometry, t, barycentric);
+  context->transmittance *= 1.f - opacity_at(*context->scene, *context->geometry, t, barycentric);
   if (context->transmittance >= kOpaque) args->valid[0] = 0;
 }
 
@@ -69,12 +68,10 @@ struct RayScene::Impl {
     rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                geometry->positions.raw().data(), 0, sizeof(Vec3),
                                geometry->positions.size());
-    auto* indices = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                3 * sizeof(std::uint32_t), ids.size()));
+    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), ids.size()));
     for (std::size_t i = 0; i < ids.size(); ++i)
-      for (int k = 0; k < 3; ++k)
-        indices[3 * i + k] = geometry->triangles[ids[i]][k].value;
+      for (int k = 0; k < 3; ++k) indices[3 * i + k] = geometry->triangles[ids[i]][k].value;
     if (which == 1) {
       rtcSetGeometryOccludedFilterFunction(mesh, attenuate);
       rtcSetGeometryIntersectFilterFunction(mesh, pass_by_chance);
@@ -113,8 +110,7 @@ RTCRay make_ray(const Vec3& origin, const Vec3& direction, float far) {
 
 }  // namespace
 
-RayScene::RayScene(const Scene& scene, const Geometry& geometry)
-    : impl_(std::make_unique<Impl>()) {
+RayScene::RayScene(const Scene& scene, const Geometry& geometry) : impl_(std::make_unique<Impl>()) {
   _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
   _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
   impl_->source = &scene;
@@ -130,9 +126,9 @@ RayScene::RayScene(const Scene& scene, const Geometry& geometry)
     if (!impl_->triangles[which].empty()) impl_->attach(which);
   rtcCommitScene(impl_->scene);
 
-  const Vec3 farthest = geometry.triangles.empty()
-                            ? Vec3(1.f)
-                            : glm::max(glm::abs(geometry.bounds.lower), glm::abs(geometry.bounds.upper));
+  const Vec3 farthest = geometry.triangles.empty() ? Vec3(1.f)
+                                                   : glm::max(glm::abs(geometry.bounds.lower),
+                                                              glm::abs(geometry.bounds.upper));
   lift_distance_ = max_component(farthest) * 0x1p-17f;
 }
 

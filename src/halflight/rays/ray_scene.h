@@ -15,7 +15,7 @@ struct RayHit {
   TriangleId triangle;
   Vec2 barycentric{0.f};  // weights of the triangle's 2nd and 3rd corner
   float distance = 0.f;
-  bool front = true;      // the ray met the counter-clockwise side
+  bool front = true;  // the ray met the counter-clockwise side
 };
 
 // Ray queries against the flattened scene. Surfaces of opacity below 1 let light straight through
