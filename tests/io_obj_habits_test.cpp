@@ -42,5 +42,15 @@ TEST(Obj, ATextureStandsInForTheDiffuseColour) {
   EXPECT_EQ(reflectance_at(*scene, flatten(*scene), TriangleId(0u), {0.2f, 0.2f}), Rgb(1.f));
 }
 
+TEST(Obj, TheDiffuseColourStaysWhereThePictureIsMissing) {
+  const TemporaryFolder folder;
+  folder.write("m.mtl", "newmtl a\nKd 0.2 0.3 0.4\nmap_Kd none.png\n");
+  const auto scene = load_scene(
+      folder.write("s.obj", "mtllib m.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  ASSERT_TRUE(scene) << scene.error().line();
+  EXPECT_EQ(reflectance_at(*scene, flatten(*scene), TriangleId(0u), {0.2f, 0.2f}),
+            Rgb(0.2f, 0.3f, 0.4f));
+}
+
 }  // namespace
 }  // namespace halflight

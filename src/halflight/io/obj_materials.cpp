@@ -64,11 +64,7 @@ struct Draft {
 };
 
 void apply(const Draft& draft, Material& m) {
-  // Kd beside a texture is what viewers without textures show: most exporters write its mean.
-  if (m.reflectance_texture.valid())
-    m.reflectance = Rgb(1.f);
-  else if (draft.reflectance)
-    m.reflectance = *draft.reflectance;
+  if (draft.reflectance) m.reflectance = *draft.reflectance;
   if (draft.emission)
     m.emission = *draft.emission;
   else if (m.emission_texture.valid())
@@ -123,6 +119,16 @@ void ObjMaterials::read_library(const std::filesystem::path& path) {
     }
   }
   finish();
+}
+
+// Kd beside a texture is what viewers without textures show: most exporters write its mean. So it
+// gives way to the picture, and stays where the picture is missing.
+void ObjMaterials::decode_textures() {
+  decode_pictures(pictures_, scene_, warnings_);
+  for (Material& m : scene_.materials) {
+    const TextureRef& ref = m.reflectance_texture;
+    if (ref.valid() && !scene_.textures[ref.texture].texels.empty()) m.reflectance = Rgb(1.f);
+  }
 }
 
 void ObjMaterials::read_maps(std::string_view key, std::string_view arguments,

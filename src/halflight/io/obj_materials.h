@@ -14,7 +14,7 @@
 namespace halflight {
 
 // Collects the materials of any number of MTL files into a scene.
-//   Kd x map_Kd      reflectance (without Kd: 1 under a map_Kd, else that of Material)
+//   map_Kd, else Kd  reflectance (without either: that of Material)
 //   Ke x map_Ke      radiance
 //   d or 1 - Tr, x map_d    opacity; d counts when both are given
 // Everything else (Ka, Ks, illum, bump, ...) does not concern diffuse light.
@@ -29,7 +29,7 @@ class ObjMaterials {
   // The material of faces before any usemtl.
   MaterialId unnamed();
   // To be called once, when all libraries are read.
-  void decode_textures() { decode_pictures(pictures_, scene_, warnings_); }
+  void decode_textures();
 
  private:
   void read_maps(std::string_view key, std::string_view arguments,
