@@ -63,10 +63,9 @@ Result<void> render(const RenderArguments& arguments) {
   const CameraRays camera(view->camera, view->width, view->height);
   const Progress progress(progress_listener(arguments.solve));
   const Result<Image> picture =
-      arguments.path_trace > 0
-          ? path_traced_image(tracer, camera, view->width, view->height, arguments.path_trace,
-                              arguments.seed, progress)
-          : solved_image(arguments, world, *view, progress);
+      arguments.path_trace > 0 ? path_traced_image(tracer, camera, view->width, view->height,
+                                                   arguments.path_trace, arguments.seed, progress)
+                               : solved_image(arguments, world, *view, progress);
   if (!picture) return tl::unexpected(picture.error());
   if (auto written = write_picture(arguments.view, *picture); !written) return written;
   if (arguments.visibility_output.empty()) return {};
@@ -83,10 +82,13 @@ void add_render(CLI::App& cli, int& status) {
   add_scene_arguments(command, arguments->scene);
   add_view_arguments(command, arguments->view);
   add_solve_arguments(command, arguments->solve);
-  command.add_option("--path-trace", arguments->path_trace, "trace this many paths per pixel instead")
+  command
+      .add_option("--path-trace", arguments->path_trace, "trace this many paths per pixel instead")
       ->type_name("SPP")
       ->check(CLI::Range(1u, 1u << 24));
-  command.add_option("--samples", arguments->samples_per_pixel, "camera rays per pixel of solved light")
+  command
+      .add_option("--samples", arguments->samples_per_pixel,
+                  "camera rays per pixel of solved light")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command

@@ -51,8 +51,8 @@ std::vector<Rgb> read_sensors_at(const SolutionReader& reader, const World& worl
   return irradiance;
 }
 
-Result<void> write_lit(const std::filesystem::path& path, const SolverState& state,
-                       Report& report, const Progress& progress) {
+Result<void> write_lit(const std::filesystem::path& path, const SolverState& state, Report& report,
+                       const Progress& progress) {
   const World& world = *state.world;
   const SolutionReader reader(state, kMeshReading);
   LitMeshOptions options;
@@ -101,9 +101,9 @@ Result<int> run(const SolveCommand& command) {
 
   if (!sensors.empty()) {
     phase = std::chrono::steady_clock::now();
-    const std::vector<Rgb> irradiance =
-        read_sensors_at(SolutionReader(state, {}), *world, sensors);
-    auto written = write_sensor_table(command.outputs.points_out, sensor_table(sensors, irradiance));
+    const std::vector<Rgb> irradiance = read_sensors_at(SolutionReader(state, {}), *world, sensors);
+    auto written =
+        write_sensor_table(command.outputs.points_out, sensor_table(sensors, irradiance));
     if (!written) return tl::unexpected(written.error());
     report.end_phase("sensors", phase);
   }

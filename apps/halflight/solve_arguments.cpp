@@ -61,7 +61,8 @@ Progress::Listener progress_listener(const SolveArguments& arguments) {
   if (arguments.progress == "none") return {};
   if (arguments.progress == "auto") return terminal_progress();
   return [](std::string_view phase, double share) {
-    std::fputs(fmt::format("{{\"phase\":\"{}\",\"share\":{:.4f}}}\n", phase, share).c_str(), stderr);
+    std::fputs(fmt::format("{{\"phase\":\"{}\",\"share\":{:.4f}}}\n", phase, share).c_str(),
+               stderr);
   };
 }
 

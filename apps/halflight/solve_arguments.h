@@ -15,7 +15,7 @@ namespace halflight::app {
 struct SolveArguments {
   std::string feature_size;  // empty: scene diagonal / 200
   std::string error = "5%";
-  std::string time;          // empty: no deadline
+  std::string time;  // empty: no deadline
   std::string progress = "auto";
   LinkMaker links = LinkMaker::sampled;
   int threads = 0;

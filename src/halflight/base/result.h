@@ -10,8 +10,8 @@ namespace halflight {
 
 struct Error {
   enum class Kind {
-    input,    // bad usage or input: exit status 1
-    system,   // system or resource failure: exit status 2
+    input,   // bad usage or input: exit status 1
+    system,  // system or resource failure: exit status 2
   };
   std::string what;    // "material 'wall' refers to texture 7, but there are only 3"
   std::string where;   // file, and line or JSON path where known

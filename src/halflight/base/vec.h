@@ -78,9 +78,8 @@ struct Frame {
     const float sign = std::copysign(1.f, n.z);
     const float a = -1.f / (sign + n.z);
     const float b = n.x * n.y * a;
-    return {{1.f + sign * n.x * n.x * a, sign * b, -sign * n.x},
-            {b, sign + n.y * n.y * a, -n.y},
-            n};
+    return {
+        {1.f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
   }
   Vec3 to_world(const Vec3& v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
 };

@@ -178,8 +178,7 @@ CellPoint ElementTree::sample(ElementId cell, Vec2 u) const {
   if (e.fragment_count == 0) {
     const std::size_t i = pick(surfaces_->cumulative_area, surface.first_triangle,
                                surface.triangle_count, wanted, [](float a) { return a; });
-    const float before =
-        i == surface.first_triangle ? 0.f : surfaces_->cumulative_area[i - 1];
+    const float before = i == surface.first_triangle ? 0.f : surfaces_->cumulative_area[i - 1];
     const float within = std::max(surfaces_->cumulative_area[i] - before, 1e-30f);
     const Vec2 b = uniform_triangle({std::clamp((wanted - before) / within, 0.f, 1.f), u.y});
     const TriangleId t = surfaces_->triangles[i];
@@ -197,8 +196,7 @@ CellPoint ElementTree::sample(ElementId cell, Vec2 u) const {
       wanted -= area;
       continue;
     }
-    const Vec2 b =
-        uniform_triangle({std::clamp(wanted / std::max(area, 1e-30f), 0.f, 1.f), u.y});
+    const Vec2 b = uniform_triangle({std::clamp(wanted / std::max(area, 1e-30f), 0.f, 1.f), u.y});
     const Vec2 at =
         corners[0] + b.x * (corners[k] - corners[0]) + b.y * (corners[k + 1] - corners[0]);
     return {surface.to_world(at), f.triangle};

@@ -1,7 +1,7 @@
 // The one tree of the solver (Sillion's H-elements): clusters > sides of surfaces > their cells.
-// An element is either a cluster or a cell of one side of a surface; a side's first cell is its whole
-// surface, and cells split in two across their longer side in the surface's own plane, so meshing
-// does not depend on the triangles of the file.
+// An element is either a cluster or a cell of one side of a surface; a side's first cell is its
+// whole surface, and cells split in two across their longer side in the surface's own plane, so
+// meshing does not depend on the triangles of the file.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Element {
   ElementId parent;
   std::uint32_t first_child = 0;  // children are consecutive and come after their parent
   std::uint32_t child_count = 0;
-  SideId side;  // invalid: a cluster
+  SideId side;                            // invalid: a cluster
   Vec2 cell_lower{0.f}, cell_upper{0.f};  // rectangle in the surface's plane
   std::uint32_t first_fragment = 0;       // none: the cell is the whole surface
   std::uint32_t fragment_count = 0;

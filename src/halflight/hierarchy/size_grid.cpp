@@ -12,8 +12,8 @@ namespace halflight {
 namespace {
 
 constexpr int kFinestLevel = 20;
-constexpr std::size_t kChunk = 32;      // objects agglomerated at once
-constexpr float kPadding = 0.02f;       // of the voxel: flat boxes get a volume
+constexpr std::size_t kChunk = 32;  // objects agglomerated at once
+constexpr float kPadding = 0.02f;   // of the voxel: flat boxes get a volume
 
 struct Item {
   Bounds3f box;
@@ -84,7 +84,8 @@ class Builder {
     std::vector<Item> straddlers;
     std::vector<std::pair<std::uint64_t, std::uint32_t>> inside;  // voxel key, item
     for (std::uint32_t i = 0; i < items.size(); ++i) {
-      const auto low = voxel_of(items[i].box.lower, level), high = voxel_of(items[i].box.upper, level);
+      const auto low = voxel_of(items[i].box.lower, level),
+                 high = voxel_of(items[i].box.upper, level);
       if (options_.strict && low != high)
         straddlers.push_back(items[i]);
       else
@@ -98,7 +99,8 @@ class Builder {
     for (std::size_t i = 0; i < inside.size();) {
       const std::uint64_t key = inside[i].first;
       std::vector<Item> held;
-      for (; i < inside.size() && inside[i].first == key; ++i) held.push_back(items[inside[i].second]);
+      for (; i < inside.size() && inside[i].first == key; ++i)
+        held.push_back(items[inside[i].second]);
       for (const Item& item : group_voxel(std::move(held), voxel)) {
         if (options_.strict && item.is_cluster)
           clusters_in_voxel[key].push_back(static_cast<std::uint32_t>(result.size()));
@@ -114,10 +116,9 @@ class Builder {
   // Objects of one voxel: least empty space first; tiny ones join a cluster even if it is largely
   // empty.
   std::vector<Item> group_voxel(std::vector<Item> held, float voxel) {
-    const auto tiny_begin =
-        std::stable_partition(held.begin(), held.end(), [&](const Item& item) {
-          return item.box.longest_side() >= options_.tiny_share * voxel;
-        });
+    const auto tiny_begin = std::stable_partition(held.begin(), held.end(), [&](const Item& item) {
+      return item.box.longest_side() >= options_.tiny_share * voxel;
+    });
     std::vector<Item> tiny(tiny_begin, held.end());
     held.erase(tiny_begin, held.end());
 
@@ -149,9 +150,9 @@ class Builder {
         both.extend(item.box);
         return padded_volume(both) - padded_volume(result[host].box);
       };
-      guests[*std::min_element(hosts.begin(), hosts.end(),
-                               [&](auto a, auto b) { return growth(a) < growth(b); })]
-          .push_back(item);
+      guests[*std::min_element(hosts.begin(), hosts.end(), [&](auto a, auto b) {
+        return growth(a) < growth(b);
+      })].push_back(item);
     }
     for (const auto& [host, joined] : guests) {
       std::vector<Item> members{result[host]};
@@ -220,7 +221,8 @@ class Builder {
       const Item& straddler, int level,
       const std::unordered_map<std::uint64_t, std::vector<std::uint32_t>>& clusters_in_voxel,
       std::vector<Item>& result) {
-    const auto low = voxel_of(straddler.box.lower, level), high = voxel_of(straddler.box.upper, level);
+    const auto low = voxel_of(straddler.box.lower, level),
+               high = voxel_of(straddler.box.upper, level);
     float least = options_.largest_empty_share;
     Item* host = nullptr;
     for (std::uint32_t z = low[2]; z <= high[2]; ++z)

@@ -9,8 +9,8 @@
 namespace halflight {
 
 struct SizeGridOptions {
-  // Strict: an object belongs to a voxel that holds it wholly, and those that straddle voxels join a
-  // cluster or are promoted (the paper). Loose: it belongs to the voxel of its centre.
+  // Strict: an object belongs to a voxel that holds it wholly, and those that straddle voxels join
+  // a cluster or are promoted (the paper). Loose: it belongs to the voxel of its centre.
   bool strict = false;
   float largest_empty_share = 0.6f;  // e = 1 - (V(a) + V(b)) / V(a u b) accepted for a merge
   float tiny_share = 0.25f;          // of the voxel's side: smaller objects are grouped regardless

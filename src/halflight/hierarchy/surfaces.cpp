@@ -15,7 +15,7 @@ constexpr float kSamePlane = 1e-4f;
 struct HalfEdge {
   std::uint32_t low, high;  // welded vertices
   std::uint32_t triangle;
-  bool forward;             // runs low -> high
+  bool forward;  // runs low -> high
   bool operator<(const HalfEdge& o) const {
     return std::tie(low, high, triangle) < std::tie(o.low, o.high, o.triangle);
   }

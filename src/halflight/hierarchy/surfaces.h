@@ -20,11 +20,11 @@ inline SurfaceId surface_of(SideId s) { return SurfaceId(s.value / 2); }
 inline bool is_back(SideId s) { return s.value % 2 != 0; }
 
 struct Surface {
-  Vec3 origin{0.f};        // of the plane's (u, v) coordinates
-  Vec3 axis_u{1, 0, 0};    // unit, in the plane
-  Vec3 axis_v{0, 1, 0};    // unit, in the plane; axis_u x axis_v = normal
-  Vec3 normal{0, 0, 1};    // of the front side
-  Vec2 uv_lower{0.f};      // bounding rectangle in the plane
+  Vec3 origin{0.f};      // of the plane's (u, v) coordinates
+  Vec3 axis_u{1, 0, 0};  // unit, in the plane
+  Vec3 axis_v{0, 1, 0};  // unit, in the plane; axis_u x axis_v = normal
+  Vec3 normal{0, 0, 1};  // of the front side
+  Vec2 uv_lower{0.f};    // bounding rectangle in the plane
   Vec2 uv_upper{0.f};
   float area = 0.f;
   MaterialId material;
@@ -40,8 +40,8 @@ struct Surface {
 
 struct Surfaces {
   IdVector<SurfaceId, Surface> surfaces;
-  std::vector<TriangleId> triangles;            // grouped by surface
-  std::vector<float> cumulative_area;           // within its surface, after each of `triangles`
+  std::vector<TriangleId> triangles;   // grouped by surface
+  std::vector<float> cumulative_area;  // within its surface, after each of `triangles`
   IdVector<TriangleId, SurfaceId> of_triangle;
 
   const Surface& operator[](SurfaceId id) const { return surfaces[id]; }

@@ -18,8 +18,8 @@ struct ReadOptions {
 
 // For the many vertices of a lit mesh, and for pixels, several of which share a place.
 inline constexpr ReadOptions kMeshReading{.gather_rays = 64, .direct = {}};
-inline constexpr ReadOptions kPixelReading{
-    .gather_rays = 32, .direct = {.shadow_rays = 8, .penumbra_rays = 16}};
+inline constexpr ReadOptions kPixelReading{.gather_rays = 32,
+                                           .direct = {.shadow_rays = 8, .penumbra_rays = 16}};
 
 class SolutionReader {
  public:

@@ -2,8 +2,8 @@
 
 #include <ctime>
 
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
+#include <nlohmann/json.hpp>
 
 #include "halflight/base/parallel.h"
 

@@ -38,8 +38,8 @@ class LitSide {
       indirect_.push_back(p.indirect[i]);
     }
     for (const auto& t : p.triangles) {
-      geometry_.triangles.push_back({VertexId(base + t[0]), VertexId(base + t[1]),
-                                     VertexId(base + t[2])});
+      geometry_.triangles.push_back(
+          {VertexId(base + t[0]), VertexId(base + t[1]), VertexId(base + t[2])});
       geometry_.materials.push_back(kOpaqueMaterial);
     }
   }
@@ -98,8 +98,8 @@ Image solution_image(const SolverState& state, const SolutionReader& reader, con
                         hash(pixel, k));
       image.pixels[pixel] = sum / static_cast<float>(samples_per_pixel);
     });
-    progress.report("picture", static_cast<double>(first + count) /
-                                   static_cast<double>(image.pixels.size()));
+    progress.report("picture",
+                    static_cast<double>(first + count) / static_cast<double>(image.pixels.size()));
   }
   return image;
 }

@@ -73,8 +73,7 @@ PlacedCamera place(const Camera& camera, const Mat4& world) {
   return placed;
 }
 
-Vec2 interpolate(const IdVector<VertexId, Vec2>& values, const std::array<VertexId, 3>& v,
-                 Vec2 b) {
+Vec2 interpolate(const IdVector<VertexId, Vec2>& values, const std::array<VertexId, 3>& v, Vec2 b) {
   return (1.f - b.x - b.y) * values[v[0]] + b.x * values[v[1]] + b.y * values[v[2]];
 }
 

@@ -50,7 +50,8 @@ struct Geometry {
   IdVector<VertexId, Vec3> positions;
   IdVector<VertexId, Vec3> normals;  // shading normals, unit; zero where the file has none
   std::array<IdVector<VertexId, Vec2>, 2> uvs;
-  IdVector<TriangleId, std::array<VertexId, 3>> triangles;  // non-degenerate, front counter-clockwise
+  IdVector<TriangleId, std::array<VertexId, 3>>
+      triangles;  // non-degenerate, front counter-clockwise
   IdVector<TriangleId, MaterialId> materials;
   IdVector<TriangleId, InstanceId> instances;
   IdVector<InstanceId, PrimitiveInstance> primitive_instances;
@@ -72,7 +73,8 @@ struct Geometry {
 
 Geometry flatten(const Scene& scene);
 
-// Material properties at a point of a triangle given by barycentric weights of its 2nd and 3rd corner.
+// Material properties at a point of a triangle given by barycentric weights of its 2nd and 3rd
+// corner.
 Rgb reflectance_at(const Scene&, const Geometry&, TriangleId, Vec2 barycentric);  // within [0, 1]
 Rgb emission_at(const Scene&, const Geometry&, TriangleId, Vec2 barycentric);     // radiance
 float opacity_at(const Scene&, const Geometry&, TriangleId, Vec2 barycentric);    // within [0, 1]

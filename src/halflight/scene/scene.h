@@ -1,5 +1,6 @@
-// The scene as arrays, as read from a file: nodes place meshes, meshes hold primitives of triangles.
-// Lengths are in the file's own unit until `to_world` (metres, +Y up) is applied; see geometry.h.
+// The scene as arrays, as read from a file: nodes place meshes, meshes hold primitives of
+// triangles. Lengths are in the file's own unit until `to_world` (metres, +Y up) is applied; see
+// geometry.h.
 #pragma once
 
 #include <array>
@@ -57,7 +58,8 @@ struct Material {
   float alpha = 1.f;  // base colour alpha, OBJ d
   float alpha_cutoff = 0.5f;
   TextureRef alpha_texture;  // OBJ map_d, as its alpha; glTF alpha is that of reflectance_texture
-  float transmission = 0.f;  // KHR_materials_transmission; opacity is multiplied by 1 - transmission
+  float transmission =
+      0.f;  // KHR_materials_transmission; opacity is multiplied by 1 - transmission
   bool double_sided = false;  // emission leaves the back side too
 
   bool emits() const { return max_component(emission) > 0.f; }
@@ -65,10 +67,10 @@ struct Material {
 
 struct Primitive {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;                 // empty or one per position
-  std::array<std::vector<Vec2>, 2> uvs;      // each empty or one per position
+  std::vector<Vec3> normals;                            // empty or one per position
+  std::array<std::vector<Vec2>, 2> uvs;                 // each empty or one per position
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from the front
-  MaterialId material;                       // always valid
+  MaterialId material;                                  // always valid
 };
 
 struct Mesh {
@@ -89,9 +91,9 @@ struct Light {  // KHR_lights_punctual, at the node's origin, shining along the 
 struct Camera {  // at the node's origin, looking along the node's -Z, +Y up
   std::string name;
   bool perspective = true;
-  float vertical_fov = 0.8f;   // radians, perspective
-  float aspect = 0.f;          // width / height; 0: that of the picture
-  float half_height = 1.f;     // orthographic
+  float vertical_fov = 0.8f;  // radians, perspective
+  float aspect = 0.f;         // width / height; 0: that of the picture
+  float half_height = 1.f;    // orthographic
 };
 
 struct Node {
@@ -111,8 +113,8 @@ struct Scene {
   IdVector<TextureId, Texture> textures;
   IdVector<LightId, Light> lights;
   IdVector<CameraId, Camera> cameras;
-  Rgb sky{0.f};         // constant radiance of everything beyond the scene
-  Mat4 to_world{1.0};   // from the file's coordinates to metres, +Y up
+  Rgb sky{0.f};                       // constant radiance of everything beyond the scene
+  Mat4 to_world{1.0};                 // from the file's coordinates to metres, +Y up
   std::vector<std::string> warnings;  // what the reader tolerated, one line each
 };
 

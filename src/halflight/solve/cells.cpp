@@ -27,7 +27,8 @@ struct GivenLight {
   float deviation = 0.f;
 };
 
-GivenLight sample_given_light(const SolverState& state, ElementId cell, const EmitterTree* emitters) {
+GivenLight sample_given_light(const SolverState& state, ElementId cell,
+                              const EmitterTree* emitters) {
   const Vec3 n = state.tree.normal(cell);
   const bool whole_and_small = state.tree.cell_size(cell) < state.options.feature_size;
   const std::uint32_t samples = whole_and_small ? 1 : kPointsOfCell;
@@ -97,7 +98,8 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   });
 }
 
-void update_given_light(SolverState& state, float irradiance_threshold, const EmitterTree* emitters) {
+void update_given_light(SolverState& state, float irradiance_threshold,
+                        const EmitterTree* emitters) {
   if (!has_outer_light(*state.world) && !emitters) return;
   std::vector<ElementId> open;
   for (std::size_t i = 0; i < state.tree.size(); ++i) {
@@ -115,8 +117,8 @@ void update_given_light(SolverState& state, float irradiance_threshold, const Em
       if (!state.outer_light.empty()) state.outer_light[e] = light.outer;
       state.given_light_known[e] = 1;
       const float error = light.deviation * std::sqrt(state.tree[e].area / scene_area);
-      uneven[i] = error > irradiance_threshold &&
-                  state.tree.cell_size(e) > state.options.feature_size;
+      uneven[i] =
+          error > irradiance_threshold && state.tree.cell_size(e) > state.options.feature_size;
     });
     std::vector<ElementId> split;
     for (std::size_t i = 0; i < open.size(); ++i)

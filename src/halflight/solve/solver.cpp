@@ -33,8 +33,8 @@ float first_guess_of_irradiance(const SolverState& state) {
   for (std::size_t i = 0; i < state.tree.size(); ++i) {
     const ElementId e(i);
     if (!state.tree[e].is_cluster() && state.tree[e].is_leaf())
-      power += static_cast<double>(
-          state.tree[e].area * average(state.exitance[e] + state.given_light[e]));
+      power += static_cast<double>(state.tree[e].area *
+                                   average(state.exitance[e] + state.given_light[e]));
   }
   return static_cast<float>(power) / std::max(state.tree[state.tree.root()].area, 1e-30f);
 }
@@ -72,11 +72,12 @@ SolverState make_state(std::shared_ptr<const World> world, const SolveOptions& o
   std::vector<Bounds3f> boxes(surfaces->surfaces.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = (*surfaces)[SurfaceId(i)].box;
   const auto live = find_live_sides(world->scene, world->geometry, *surfaces, world->rays);
-  SolverState state{world,
-                    surfaces,
-                    ElementTree(world->geometry, *surfaces, build_size_grid(boxes), live),
-                    options,
-                    {}, {}, {}, {}, {}, false, {}, {}, {}, {}};
+  SolverState state{
+      world,   surfaces, ElementTree(world->geometry, *surfaces, build_size_grid(boxes), live),
+      options, {},       {},
+      {},      {},       {},
+      false,   {},       {},
+      {},      {}};
   if (!(state.options.feature_size > 0.f))
     state.options.feature_size = world->geometry.bounds.diagonal() / 200.f;
 
@@ -119,8 +120,9 @@ void advance(SolverState& state, const Progress& progress) {
   refine_options.largest_blind_cell = kBlindCells * state.options.feature_size;
   refine_options.most_links = state.options.most_links;
   RefineCounts counts;
-  refine(state.tree, state.world->rays, state.radiosity, std::move(pairs), refine_options,
-         [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress, links, counts);
+  refine(
+      state.tree, state.world->rays, state.radiosity, std::move(pairs), refine_options,
+      [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress, links, counts);
   update_given_light(state, record.irradiance_threshold, nullptr);
   if (state.options.links == LinkMaker::sampled && pass + 1 == state.options.passes)
     links = replace_by_sampled_links(state, record.irradiance_threshold);

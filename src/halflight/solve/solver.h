@@ -22,7 +22,7 @@ struct SolveOptions {
   float feature_size = 0.f;  // s, metres: smallest shadow kept exact; 0: scene diagonal / 200
   float error = 0.05f;       // aimed-at relative RMS error of irradiance
   LinkMaker links = LinkMaker::sampled;
-  int passes = 3;            // settings of the threshold, coarse to fine
+  int passes = 3;  // settings of the threshold, coarse to fine
   std::size_t most_links = 40'000'000;
 };
 
@@ -44,16 +44,16 @@ struct SolverState {
   ElementTree tree;
   SolveOptions options;  // resolved: no zeros that stand for defaults
 
-  IdVector<ElementId, Rgb> reflectance;   // of cells
-  IdVector<ElementId, Rgb> exitance;      // pi L of cells
+  IdVector<ElementId, Rgb> reflectance;  // of cells
+  IdVector<ElementId, Rgb> exitance;     // pi L of cells
   // Irradiance of leaf cells that links do not carry: by punctual lights and the sky, and with
   // sampled links by emitting surfaces too.
   IdVector<ElementId, Rgb> given_light;
   IdVector<ElementId, std::uint8_t> given_light_known;
-  IdVector<ElementId, Rgb> outer_light;   // its part by punctual lights and the sky; empty: none
-  bool emission_is_given = false;         // links carry reflected light only
-  IdVector<ElementId, Rgb> irradiance;    // E of cells, from all links above and at them
-  IdVector<ElementId, Rgb> radiosity;     // B = rho E + pi L, mean over the element's area
+  IdVector<ElementId, Rgb> outer_light;  // its part by punctual lights and the sky; empty: none
+  bool emission_is_given = false;        // links carry reflected light only
+  IdVector<ElementId, Rgb> irradiance;   // E of cells, from all links above and at them
+  IdVector<ElementId, Rgb> radiosity;    // B = rho E + pi L, mean over the element's area
   LinkTable links;
   std::vector<PassRecord> history;
 
@@ -67,9 +67,9 @@ void advance(SolverState& state, const Progress& progress);
 
 // Power in W (or lumens) over all cells.
 struct EnergyBalance {
-  Rgb emitted{0.f};   // by surfaces, plus what punctual lights and the sky bring in
+  Rgb emitted{0.f};  // by surfaces, plus what punctual lights and the sky bring in
   Rgb absorbed{0.f};
-  Rgb escaped{0.f};   // emitted - absorbed: left through openings, or lost by error
+  Rgb escaped{0.f};  // emitted - absorbed: left through openings, or lost by error
 };
 EnergyBalance energy_balance(const SolverState& state);
 

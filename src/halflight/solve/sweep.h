@@ -5,7 +5,8 @@
 
 namespace halflight {
 
-// Sweeps (Jacobi) until radiosity changes by less than `tolerance` of its mean, and returns how often.
+// Sweeps (Jacobi) until radiosity changes by less than `tolerance` of its mean, and returns how
+// often.
 int sweep_to_convergence(SolverState& state, float tolerance, int most_sweeps);
 
 // Radiosity of every element from the irradiance of the leaves: B = rho E + pi L, means upwards.

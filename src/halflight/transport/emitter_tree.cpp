@@ -203,7 +203,8 @@ Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int 
     const Vec3 y = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
     const Vec3 normal = normal_of(e), between = y - x;
     const float squared = glm::dot(between, between);
-    const float cosines = std::max(0.f, glm::dot(n, between)) * std::max(0.f, -glm::dot(normal, between));
+    const float cosines =
+        std::max(0.f, glm::dot(n, between)) * std::max(0.f, -glm::dot(normal, between));
     if (!(cosines > 0.f)) continue;
     // Chosen with density power / (area * node power): radiance / density, colour kept.
     const Rgb colour = e.radiance / average(e.radiance);

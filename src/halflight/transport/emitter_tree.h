@@ -33,15 +33,15 @@ class EmitterTree {
  private:
   struct Emitter {
     TriangleId triangle;
-    bool back = false;    // emits from the clockwise side
-    Rgb radiance{0.f};    // mean over the triangle
+    bool back = false;  // emits from the clockwise side
+    Rgb radiance{0.f};  // mean over the triangle
     bool textured = false;
-    float power = 0.f;    // average(radiance) * area
+    float power = 0.f;  // average(radiance) * area
   };
   struct Node {
     Bounds3f box;
-    Vec3 axis{0.f};           // of the cone that holds all emitter normals
-    float cos_spread = 1.f;   // -1: no cone
+    Vec3 axis{0.f};          // of the cone that holds all emitter normals
+    float cos_spread = 1.f;  // -1: no cone
     float power = 0.f;
     std::uint32_t first = 0, count = 0;  // emitters
     std::uint32_t right = 0;             // second child; the first follows its parent; 0: a leaf

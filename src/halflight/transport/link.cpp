@@ -8,8 +8,8 @@ namespace {
 constexpr float kOctahedralScale = 32766.f;
 
 std::uint32_t quantise(float v) {
-  return static_cast<std::uint32_t>(
-      std::lround(std::clamp(v, -1.f, 1.f) * kOctahedralScale) + 32767);
+  return static_cast<std::uint32_t>(std::lround(std::clamp(v, -1.f, 1.f) * kOctahedralScale) +
+                                    32767);
 }
 float sign_not_zero(float v) { return v >= 0.f ? 1.f : -1.f; }
 
@@ -20,7 +20,8 @@ PackedDirection::PackedDirection(const Vec3& unit) {
   if (!(norm > 0.f)) return;
   Vec2 p = Vec2(unit.x, unit.y) / norm;
   if (unit.z < 0.f)
-    p = Vec2((1.f - std::abs(p.y)) * sign_not_zero(p.x), (1.f - std::abs(p.x)) * sign_not_zero(p.y));
+    p = Vec2((1.f - std::abs(p.y)) * sign_not_zero(p.x),
+             (1.f - std::abs(p.x)) * sign_not_zero(p.y));
   bits_ = quantise(p.x) | quantise(p.y) << 16;
 }
 

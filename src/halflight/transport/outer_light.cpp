@@ -41,9 +41,8 @@ Rgb punctual_irradiance(const World& world, const Vec3& x, const Vec3& n) {
     const Rgb e = unoccluded(light, x, towards, distance);
     const float cosine = glm::dot(n, towards);
     if (cosine <= 0.f || !(max_component(e) > 0.f)) continue;
-    const float visible = std::isfinite(distance)
-                              ? world.rays.transmittance(from, light.position)
-                              : world.rays.transmittance_to_sky(from, towards);
+    const float visible = std::isfinite(distance) ? world.rays.transmittance(from, light.position)
+                                                  : world.rays.transmittance_to_sky(from, towards);
     sum += visible * cosine * e;
   }
   return sum;

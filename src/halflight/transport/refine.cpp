@@ -9,9 +9,9 @@ namespace {
 
 constexpr std::size_t kBatch = 1 << 17;  // pairs judged at once
 constexpr int kSamples = 4;
-constexpr int kBlindSamples = 16;        // on cells above largest_blind_cell
+constexpr int kBlindSamples = 16;  // on cells above largest_blind_cell
 constexpr int kKeptSamples = 16;
-constexpr int kFinalSamples = 16;        // of a strong link that cannot be refined
+constexpr int kFinalSamples = 16;  // of a strong link that cannot be refined
 // A pair whose whole transfer is below this share of the threshold gets a single sample.
 constexpr float kNegligible = 0.5f;
 // A pair whose kernel alone varies by this multiple of the threshold is refined without a ray.
@@ -80,13 +80,13 @@ class Oracle {
 
  private:
   // The weight comes from samples that had no say in the decision, now or when the link is tested
-  // again: whoever accepts a pair because its samples agree, and keeps those samples, systematically
-  // loses what they missed.
+  // again: whoever accepts a pair because its samples agree, and keeps those samples,
+  // systematically loses what they missed.
   Verdict accept(ElementId r, ElementId s, int samples, const TransferBounds& bounds) const {
     const bool cells = !scene_.tree[r].is_cluster() && !scene_.tree[s].is_cluster();
-    const TransferEstimate t =
-        bounds.touching && !cells ? estimate_touching_transfer(scene_, r, s, samples, kFinal)
-                                  : estimate_transfer(scene_, r, s, samples, kFinal);
+    const TransferEstimate t = bounds.touching && !cells
+                                   ? estimate_touching_transfer(scene_, r, s, samples, kFinal)
+                                   : estimate_transfer(scene_, r, s, samples, kFinal);
     Verdict verdict;
     verdict.kind = Verdict::Kind::accept;
     verdict.rays = static_cast<std::uint8_t>(samples);
@@ -98,14 +98,13 @@ class Oracle {
   }
 
   bool is_blind(ElementId r) const {
-    return !scene_.tree[r].is_cluster() &&
-           scene_.tree.cell_size(r) > options_.largest_blind_cell;
+    return !scene_.tree[r].is_cluster() && scene_.tree.cell_size(r) > options_.largest_blind_cell;
   }
 
   bool can_split(ElementId e) const {
     const Element& element = scene_.tree[e];
-    return !element.is_leaf() || (!element.is_cluster() &&
-                                  scene_.tree.cell_size(e) > 2.f * options_.smallest_cell);
+    return !element.is_leaf() ||
+           (!element.is_cluster() && scene_.tree.cell_size(e) > 2.f * options_.smallest_cell);
   }
 
   // The larger end first; `accept` when neither end can be split.
@@ -179,7 +178,8 @@ void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, R
       const Verdict& v = verdicts[i];
       counts.rays += v.rays;
       if (v.kind == Verdict::Kind::accept) {
-        if (v.link.weight != 0.f || v.link.error > 0.f) links.push_back({batch[i].receiver, v.link});
+        if (v.link.weight != 0.f || v.link.error > 0.f)
+          links.push_back({batch[i].receiver, v.link});
       } else if (v.kind != Verdict::Kind::drop) {
         append_finer_pairs(tree, batch[i], v.kind, pairs);
       }

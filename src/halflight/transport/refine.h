@@ -26,8 +26,8 @@ struct RefineOptions {
 };
 
 struct RefineCounts {
-  std::uint64_t pairs = 0;       // visited
-  std::uint64_t rays = 0;        // exact visibility
+  std::uint64_t pairs = 0;           // visited
+  std::uint64_t rays = 0;            // exact visibility
   std::uint64_t accepted_early = 0;  // because most_links was reached
 };
 

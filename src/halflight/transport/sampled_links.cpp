@@ -15,12 +15,14 @@ ElementId hit_leaf(const ElementTree& tree, const RayHit& hit) {
   return tree.find_leaf(side, a + hit.barycentric.x * (b - a) + hit.barycentric.y * (c - a));
 }
 
-// Cosine-distributed rays from points spread over the cell: each hit carries 1 / n of the hemisphere.
+// Cosine-distributed rays from points spread over the cell: each hit carries 1 / n of the
+// hemisphere.
 void sample_cell(const ElementTree& tree, const RayScene& rays, ElementId cell, int n,
                  std::vector<ReceiverLink>& links) {
   const Vec3 normal = tree.normal(cell);
   const Frame frame = Frame::from_normal(normal);
-  const Vec2 shift_x = random_shift(hash(cell.value, 23)), shift_w = random_shift(hash(cell.value, 29));
+  const Vec2 shift_x = random_shift(hash(cell.value, 23)),
+             shift_w = random_shift(hash(cell.value, 29));
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
     // Points and directions walk through their sequences with different strides.
     const Vec3 x = tree.sample(cell, r2_sequence(7 * k, shift_x)).position;
@@ -34,8 +36,10 @@ void sample_cell(const ElementTree& tree, const RayScene& rays, ElementId cell, 
   }
 }
 
-// A cell of the cluster that faces w, chosen with density area * cosine; invalid when none was found.
-ElementId facing_cell(const ElementTree& tree, ElementId cluster, const Vec3& w, std::uint64_t seed) {
+// A cell of the cluster that faces w, chosen with density area * cosine; invalid when none was
+// found.
+ElementId facing_cell(const ElementTree& tree, ElementId cluster, const Vec3& w,
+                      std::uint64_t seed) {
   for (std::uint32_t attempt = 0; attempt < kFacingAttempts; ++attempt) {
     float wanted = to_unit_float(hash(seed, attempt, 1));
     ElementId at = cluster;

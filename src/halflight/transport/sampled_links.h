@@ -1,7 +1,7 @@
 // Links made by rays: a receiver shoots a few rays and stores what they hit. Kernel and visibility
-// come jointly, rows add up to what does not leave the scene, and there is no singularity; the price
-// is noise, which later averages remove. Such links carry reflected light only: light straight from
-// emitters is read exactly (emitter_tree.h).
+// come jointly, rows add up to what does not leave the scene, and there is no singularity; the
+// price is noise, which later averages remove. Such links carry reflected light only: light
+// straight from emitters is read exactly (emitter_tree.h).
 #pragma once
 
 #include <cstdint>

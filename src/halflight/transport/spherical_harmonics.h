@@ -41,9 +41,9 @@ struct DirectionalIrradiance {
   }
   // Ringing of the truncated series may go below zero: there no light is the better answer.
   Rgb irradiance(const Vec3& n) const {
-    constexpr std::array<float, 9> cosine_lobe{kPi,        2.f * kPi / 3, 2.f * kPi / 3,
-                                               2.f * kPi / 3, kPi / 4,    kPi / 4,
-                                               kPi / 4,    kPi / 4,       kPi / 4};
+    constexpr std::array<float, 9> cosine_lobe{kPi,           2.f * kPi / 3, 2.f * kPi / 3,
+                                               2.f * kPi / 3, kPi / 4,       kPi / 4,
+                                               kPi / 4,       kPi / 4,       kPi / 4};
     const SphericalHarmonics y = evaluate_harmonics(n);
     Rgb e(0.f);
     for (int i = 0; i < 9; ++i) e += cosine_lobe[i] * y[i] * coefficients[i];

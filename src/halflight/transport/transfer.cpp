@@ -74,9 +74,8 @@ CellSample sample_element(const ElementTree& tree, ElementId from, float choice,
 
 float cell_form_factor(const ElementTree& tree, const Vec3& x, const Vec3& n, ElementId cell) {
   float sum = 0.f;
-  tree.for_each_piece(cell, [&](std::span<const Vec3> piece) {
-    sum += polygon_form_factor(x, n, piece);
-  });
+  tree.for_each_piece(
+      cell, [&](std::span<const Vec3> piece) { sum += polygon_form_factor(x, n, piece); });
   return std::min(sum, 1.f);
 }
 
@@ -93,10 +92,8 @@ TransferBounds bound_transfer(const ElementTree& tree, ElementId receiver, Eleme
     return bounds;
   }
   float facing = 1.f;
-  if (!s.is_cluster())
-    facing *= std::clamp(height_above(tree, source, r.box) / near, 0.f, 1.f);
-  if (!r.is_cluster())
-    facing *= std::clamp(height_above(tree, receiver, s.box) / near, 0.f, 1.f);
+  if (!s.is_cluster()) facing *= std::clamp(height_above(tree, source, r.box) / near, 0.f, 1.f);
+  if (!r.is_cluster()) facing *= std::clamp(height_above(tree, receiver, s.box) / near, 0.f, 1.f);
   bounds.largest_weight = std::min(1.f, facing * s.area / (kPi * near * near));
   bounds.kernel_variation = std::min(1.f, (r.diameter() + s.diameter()) / far);
   return bounds;
@@ -135,7 +132,8 @@ TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receive
       const float c = stratum + offset;
       return c < 1.f ? c : c - 1.f;
     };
-    CellSample x = sample_element(tree, receiver, choice(choice_r), r2_sequence(index, shift_r), area);
+    CellSample x =
+        sample_element(tree, receiver, choice(choice_r), r2_sequence(index, shift_r), area);
     CellSample y =
         sample_element(tree, source, choice(choice_s), r2_sequence(index + 1, shift_s), power);
     // A receiving cluster is represented by cells that face the source, a near cell by the part
@@ -166,13 +164,13 @@ TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receive
     if (near_cell && to_cell)
       kernel = cell_form_factor(tree, x.position, x.normal, source);
     else if (squared < kNearDiameters * kNearDiameters * cell.diameter() * cell.diameter())
-      kernel = cell_form_factor(tree, x.position, to_cell ? x.normal : w, y.cell) * s.area / cell.area;
+      kernel =
+          cell_form_factor(tree, x.position, to_cell ? x.normal : w, y.cell) * s.area / cell.area;
     else
       kernel = cosine_s * (to_cell ? cosine_r : 1.f) * s.area / (kPi * squared);
     if (!(kernel > 0.f)) continue;
-    const float value =
-        kernel * scene.rays.transmittance(scene.rays.lift(x.position, x.normal),
-                                          scene.rays.lift(y.position, y.normal));
+    const float value = kernel * scene.rays.transmittance(scene.rays.lift(x.position, x.normal),
+                                                          scene.rays.lift(y.position, y.normal));
     unoccluded += weight * kernel;
     sum += weight * value;
     sum_of_squares += weight * value * value;
@@ -206,10 +204,10 @@ TransferEstimate estimate_touching_transfer(const TransferScene& scene, ElementI
     const auto index = static_cast<std::uint32_t>(k);
     const float stratum = (static_cast<float>(k) + choice) / static_cast<float>(samples);
     const CellSample x = sample_element(tree, receiver, stratum, r2_sequence(index, shift_x), area);
-    const Vec3 w = Frame::from_normal(x.normal)
-                       .to_world(cosine_hemisphere(r2_sequence(index + 1, shift_w)));
-    const auto hit = scene.rays.closest_hit(scene.rays.lift(x.position, x.normal), w, kInfinity,
-                                            hash(seed, k));
+    const Vec3 w =
+        Frame::from_normal(x.normal).to_world(cosine_hemisphere(r2_sequence(index + 1, shift_w)));
+    const auto hit =
+        scene.rays.closest_hit(scene.rays.lift(x.position, x.normal), w, kInfinity, hash(seed, k));
     if (!hit) continue;
     const SideId side = side_of(tree.surfaces().of_triangle[hit->triangle], !hit->front);
     const auto [a, b, c] = tree.geometry().corners(hit->triangle);

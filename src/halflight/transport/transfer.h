@@ -19,9 +19,9 @@ struct TransferScene {
 
 // Cheap geometry of a pair, before any ray. Per unit radiosity of the source.
 struct TransferBounds {
-  float largest_weight = 0.f;      // upper bound of the weight, 1 when the boxes touch
-  float kernel_variation = 1.f;    // relative variation of the kernel over the pair, about 0 to 1
-  bool touching = false;           // boxes overlap: no distance to speak of
+  float largest_weight = 0.f;    // upper bound of the weight, 1 when the boxes touch
+  float kernel_variation = 1.f;  // relative variation of the kernel over the pair, about 0 to 1
+  bool touching = false;         // boxes overlap: no distance to speak of
 };
 TransferBounds bound_transfer(const ElementTree& tree, ElementId receiver, ElementId source);
 
@@ -30,8 +30,8 @@ bool back_facing(const ElementTree& tree, ElementId receiver, ElementId source);
 
 struct TransferEstimate {
   float weight = 0.f;
-  float unoccluded = 0.f; // the weight had nothing stood between
-  float deviation = 0.f;  // standard deviation of the weight over the sampled pairs
+  float unoccluded = 0.f;  // the weight had nothing stood between
+  float deviation = 0.f;   // standard deviation of the weight over the sampled pairs
   PackedDirection direction;
 };
 
@@ -41,9 +41,9 @@ struct TransferEstimate {
 TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receiver, ElementId source,
                                    int samples, std::uint64_t stream);
 
-// The same for pairs that touch, where that kernel is singular: the share of cosine-distributed rays
-// from the receiver that meet the source, weighted by what they meet. Bounded by 1. A receiving
-// cluster gets it from all around.
+// The same for pairs that touch, where that kernel is singular: the share of cosine-distributed
+// rays from the receiver that meet the source, weighted by what they meet. Bounded by 1. A
+// receiving cluster gets it from all around.
 TransferEstimate estimate_touching_transfer(const TransferScene& scene, ElementId receiver,
                                             ElementId source, int samples, std::uint64_t stream);
 
