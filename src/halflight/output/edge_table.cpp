@@ -8,6 +8,8 @@ namespace {
 // Light darker than this share of the mean irradiance is judged relative to this share.
 constexpr float kDarkest = 0.1f;
 constexpr float kUnlit = 1e-4f;
+// Indirect light off the straight line by less than this share is interpolated from there on.
+constexpr float kSmoothIndirect = 0.02f;
 
 template <class IdT>
 std::uint64_t pair_key(IdT a, IdT b) {
@@ -61,6 +63,7 @@ void EdgeTable::enter(std::span<FineSheet> sheets) {
 std::size_t EdgeTable::read_middles(std::span<const FineSheet> sheets, float feature_size,
                                     float mean_irradiance, const LightReader& read) {
   std::vector<ReadingPoint> places;
+  std::vector<std::array<LitVertexId, 2>> ends;  // of the sides that the places halve
   const std::size_t first_new = mesh_.sites.size();
   for (const FineSheet& s : sheets) {
     const Sheet& sheet = mesh_.sheets[s.sheet];
@@ -77,7 +80,8 @@ std::size_t EdgeTable::read_middles(std::span<const FineSheet> sheets, float fea
       const float length = glm::length(normal_sum);
       const Vec3 normal = length > 1e-3f ? normal_sum / length : mesh_.sites[mesh_.site(a)].normal;
       middle = mesh_.sites.push_back({{}, normal, {}, {}});
-      ReadingPoint place{p, normal, sheet.source};
+      ReadingPoint place{
+          .position = p, .normal = normal, .triangle = sheet.source, .direct_only = s.smooth_indirect};
       if (continues)
         site_edge.middle = {middle, middle};
       else {  // read a little inside the surface that ends here
@@ -85,15 +89,34 @@ std::size_t EdgeTable::read_middles(std::span<const FineSheet> sheets, float fea
         place.position += inwards * std::min(1.f / 6.f, feature_size / 8.f / glm::length(inwards));
       }
       places.push_back(place);
+      ends.push_back({a, b});
     }
   }
   const std::vector<Reading> light = read(places);
-  for (std::size_t i = 0; i < light.size(); ++i)
-    mesh_.sites[SiteId(first_new + i)].light = light[i];
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    Site& site = mesh_.sites[SiteId(first_new + i)];
+    site.light = light[i];
+    if (places[i].direct_only)
+      site.light.indirect = 0.5f * (mesh_.sites[mesh_.site(ends[i][0])].light.indirect +
+                                    mesh_.sites[mesh_.site(ends[i][1])].light.indirect);
+  }
   for (const FineSheet& s : sheets)
     for (std::size_t k = 0; k < 3; ++k)
       if (s.edges[k].valid()) rate(s, k, mean_irradiance);
   return places.size();
+}
+
+bool EdgeTable::is_indirect_smooth(const FineSheet& s, float mean_irradiance) const {
+  const auto& corners = mesh_.sheets[s.sheet].corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!s.edges[k].valid()) continue;
+    const Rgb a = mesh_.sites[mesh_.site(corners[k])].light.indirect;
+    const Rgb b = mesh_.sites[mesh_.site(corners[(k + 1) % 3])].light.indirect;
+    const Reading& m = mesh_.sites[middle(s, k)].light;
+    const float scale = std::max(max_component(m.irradiance()), kDarkest * mean_irradiance);
+    if (max_component(glm::abs(m.indirect - 0.5f * (a + b))) > kSmoothIndirect * scale) return false;
+  }
+  return true;
 }
 
 void EdgeTable::rate(const FineSheet& s, std::size_t k, float mean_irradiance) {

@@ -40,6 +40,7 @@ struct SiteEdge {
 struct FineSheet {
   SheetId sheet;
   float longest_wanted = 0.f;
+  bool smooth_indirect = false;  // a sheet it came from showed indirect light to be linear
   bool primary = true;          // false: the back of a triangle whose front is shown as well
   std::array<EdgeId, 3> edges;  // side k from corner k to k + 1; invalid when too short to split
   std::array<SiteEdgeId, 3> site_edges;
@@ -61,6 +62,8 @@ class EdgeTable {
   // rates the edges. Returns the number of readings.
   std::size_t read_middles(std::span<const FineSheet> sheets, float feature_size,
                            float mean_irradiance, const LightReader& read);
+  // Indirect light is linear along all sides that could be split.
+  bool is_indirect_smooth(const FineSheet& s, float mean_irradiance) const;
   // The site in the middle of side k; its point is that of the split edge.
   SiteId middle(const FineSheet& s, std::size_t k) const;
   // Longer edges first; equal lengths by id.

@@ -6,15 +6,60 @@
 
 namespace halflight {
 
-SolutionReader::SolutionReader(const SolverState& state, const ReadOptions& options)
-    : state_(&state), options_(options), emitters_(*state.world) {}
+namespace {
 
-Rgb SolutionReader::direct(const Vec3& x, const Vec3& n) const {
-  return emitters_.irradiance(x, n, options_.direct) + punctual_irradiance(*state_->world, x, n);
+// A surface this much brighter than the scene's mean radiosity is read like an emitter.
+constexpr float kBright = 5.f;
+
+// Whole surfaces (none that needed cells) that reflect much more light than others.
+std::vector<EmittingSide> find_bright_reflectors(const SolverState& state,
+                                            IdVector<SideId, std::uint8_t>& is_bright) {
+  const ElementTree& tree = state.tree;
+  const Geometry& g = state.world->geometry;
+  double power = 0.0, area = 0.0;
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    const ElementId e(i);
+    if (tree[e].is_cluster() || !tree[e].is_leaf()) continue;
+    const float reflected = average(state.reflectance[e] * state.irradiance[e]);
+    if (!(reflected > 0.f)) continue;
+    power += static_cast<double>(tree[e].area * reflected);
+    area += static_cast<double>(tree[e].area);
+  }
+  is_bright = IdVector<SideId, std::uint8_t>(2 * state.surfaces->surfaces.size(), 0);
+  std::vector<EmittingSide> bright;
+  const float limit = area > 0.0 ? kBright * static_cast<float>(power / area) : kInfinity;
+  for (std::size_t i = 0; i < is_bright.size(); ++i) {
+    const SideId side(i);
+    const ElementId e = tree.side_root(side);
+    if (!e.valid() || !tree[e].is_leaf()) continue;
+    const Rgb reflected = state.reflectance[e] * state.irradiance[e];
+    if (!(average(reflected) > limit)) continue;
+    is_bright[side] = 1;
+    const Surface& s = (*state.surfaces)[side];
+    for (std::uint32_t k = 0; k < s.triangle_count; ++k) {
+      EmittingSide emitter;
+      emitter.triangle = state.surfaces->triangles[s.first_triangle + k];
+      emitter.back = is_back(side);
+      emitter.radiance = reflected / kPi;
+      emitter.power =
+          average(emitter.radiance) * 0.5f * glm::length(g.scaled_normal(emitter.triangle));
+      bright.push_back(emitter);
+    }
+  }
+  return bright;
 }
 
-Rgb SolutionReader::sky(const Vec3& x, const Vec3& n) const {
-  return sky_irradiance(*state_->world, x, n, options_.gather_rays, Vec2(0.5f));
+}  // namespace
+
+SolutionReader::SolutionReader(const SolverState& state, const ReadOptions& options)
+    : state_(&state),
+      options_(options),
+      emitters_(*state.world, find_emitters(*state.world)),
+      bright_(*state.world, find_bright_reflectors(state, is_bright_)) {}
+
+Rgb SolutionReader::direct(const Vec3& x, const Vec3& n) const {
+  return emitters_.irradiance(x, n, options_.direct) + punctual_irradiance(*state_->world, x, n) +
+         sky_irradiance(*state_->world, x, n, options_.gather_rays, Vec2(0.5f));
 }
 
 Rgb SolutionReader::reflected_radiosity(const RayHit& hit) const {
@@ -28,28 +73,27 @@ Rgb SolutionReader::reflected_radiosity(const RayHit& hit) const {
          state_->irradiance[leaf];
 }
 
-void SolutionReader::gather(const Vec3& x, const Vec3& n, Rgb& reflected, Rgb& sky) const {
+Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
   const World& world = *state_->world;
   const Frame frame = Frame::from_normal(n);
   const Vec3 from = world.rays.lift(x, n);
-  reflected = sky = Rgb(0.f);
+  Rgb sum(0.f);
   for (int k = 0; k < options_.gather_rays; ++k) {
     const auto index = static_cast<std::uint32_t>(k);
     const Vec3 w = frame.to_world(cosine_hemisphere(r2_sequence(index)));
-    if (const auto hit = world.rays.closest_hit(from, w, kInfinity, hash(index)))
-      reflected += reflected_radiosity(*hit);
-    else
-      sky += kPi * world.scene.sky;
+    const auto hit = world.rays.closest_hit(from, w, kInfinity, hash(index));
+    if (!hit) continue;
+    const SideId side = side_of(state_->surfaces->of_triangle[hit->triangle], !hit->front);
+    if (!is_bright_[side]) sum += reflected_radiosity(*hit);
   }
-  reflected /= static_cast<float>(options_.gather_rays);
-  sky /= static_cast<float>(options_.gather_rays);
+  return sum / static_cast<float>(options_.gather_rays) +
+         bright_.irradiance(x, n, options_.direct);
 }
 
 Reading SolutionReader::read(const ReadingPoint& point) const {
   Reading reading;
-  Rgb sky;
-  gather(point.position, point.normal, reading.indirect, sky);
-  reading.direct = direct(point.position, point.normal) + sky;
+  reading.direct = direct(point.position, point.normal);
+  if (!point.direct_only) reading.indirect = gather(point.position, point.normal);
   return reading;
 }
 

@@ -17,7 +17,7 @@ struct ReadOptions {
 };
 
 // For the many vertices of a lit mesh, and for pixels, several of which share a place.
-inline constexpr ReadOptions kMeshReading{.gather_rays = 64, .direct = {}};
+inline constexpr ReadOptions kMeshReading{  .gather_rays = 256, .direct = {}};
 inline constexpr ReadOptions kPixelReading{.gather_rays = 32,
                                            .direct = {.shadow_rays = 8, .penumbra_rays = 16}};
 
@@ -29,18 +29,22 @@ class SolutionReader {
   Reading read(const ReadingPoint& point) const;
   std::vector<Reading> operator()(std::span<const ReadingPoint> points) const;  // in parallel
 
-  Rgb direct(const Vec3& x, const Vec3& n) const;  // emitting surfaces and punctual lights
-  Rgb sky(const Vec3& x, const Vec3& n) const;
+  // Emitting surfaces, punctual lights and sky.
+  Rgb direct(const Vec3& x, const Vec3& n) const;
   // Solved radiosity less emission of what a ray has hit.
   Rgb reflected_radiosity(const RayHit& hit) const;
 
  private:
-  // Light reflected at least once, and the sky's share.
-  void gather(const Vec3& x, const Vec3& n, Rgb& reflected, Rgb& sky) const;
+  // Light reflected at least once.
+  Rgb gather(const Vec3& x, const Vec3& n) const;
 
   const SolverState* state_;
   ReadOptions options_;
   EmitterTree emitters_;
+  // Small surfaces so bright by reflection (insides of lamps) that the few rays of a gather that
+  // meet them would show: they are read like emitters, and the gather leaves them out.
+  IdVector<SideId, std::uint8_t> is_bright_;
+  EmitterTree bright_;
 };
 
 }  // namespace halflight

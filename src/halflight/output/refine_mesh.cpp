@@ -18,13 +18,16 @@ constexpr std::size_t kLeastRoom = 200;
 
 class Refiner {
  public:
-  Refiner(WorkMesh& mesh, const LitMeshOptions& options)
-      : mesh_(mesh), options_(options), table_(mesh, options.finest) {}
+  Refiner(WorkMesh& mesh, const LitMeshOptions& options, float mean_irradiance)
+      : mesh_(mesh),
+        options_(options),
+        mean_irradiance_(mean_irradiance),
+        table_(mesh, options.finest) {}
 
   // Takes on a sheet unless it is too small to be split.
   void add(FineSheet s);
   // Reads the light along the sheets added since the last call. Returns the number of readings.
-  std::size_t read_new(float mean_irradiance, const LightReader& read);
+  std::size_t read_new(const LightReader& read);
   // Chooses the most urgent edges that the vertex limit has room for; false when there are none.
   bool choose();
   // Replaces every sheet with a split side by its parts.
@@ -43,6 +46,7 @@ class Refiner {
 
   WorkMesh& mesh_;
   const LitMeshOptions& options_;
+  float mean_irradiance_;
   EdgeTable table_;
   std::vector<FineSheet> sheets_;  // replaced ones keep their place, unused
   std::size_t first_new_sheet_ = 0;
@@ -76,14 +80,14 @@ void Refiner::drop(std::uint32_t sheet, std::size_t k) {
   *at = sheets_[sheet].next_use[k];
 }
 
-std::size_t Refiner::read_new(float mean_irradiance, const LightReader& read) {
+std::size_t Refiner::read_new(const LightReader& read) {
   const std::size_t first_edge = table_.edges.size();
   const auto sheets = std::span(sheets_).subspan(first_new_sheet_);
   table_.enter(sheets);
   for (std::size_t i = first_new_sheet_; i < sheets_.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) use(static_cast<std::uint32_t>(i), k);
   const std::size_t readings =
-      table_.read_middles(sheets, options_.feature_size, mean_irradiance, read);
+      table_.read_middles(sheets, options_.feature_size, mean_irradiance_, read);
   for (std::size_t e = first_edge; e < table_.edges.size(); ++e)
     if (urgency(EdgeId(e)) > 0.f) pending_.push_back(EdgeId(e));
   first_new_sheet_ = sheets_.size();
@@ -185,11 +189,14 @@ void Refiner::replace(std::uint32_t i, std::vector<FineSheet>& parts) {
   const Vec3 c = mesh_.position(split.corners[2]);
   split.obtuse =
       glm::dot(mesh_.position(split.corners[0]) - c, mesh_.position(split.corners[1]) - c) < 0.f;
+  const bool smooth_indirect =
+      whole.smooth_indirect || table_.is_indirect_smooth(whole, mean_irradiance_);
   bool is_first = true;
   for (const auto& corners : parts_of(split)) {
     FineSheet part;
     part.longest_wanted = whole.longest_wanted;
     part.primary = whole.primary;
+    part.smooth_indirect = smooth_indirect;
     part.sheet = is_first ? whole.sheet : mesh_.sheets.push_back({{}, sheet.source, sheet.back});
     mesh_.sheets[part.sheet].corners = corners;
     parts.push_back(part);
@@ -226,7 +233,7 @@ float longest_side(const WorkMesh& mesh, const Sheet& s) {
 void refine_mesh(WorkMesh& mesh, const IdVector<TriangleId, ShownSides>& shown,
                  const LightReader& read, const LitMeshOptions& options, float mean_irradiance,
                  const Progress& progress, LitMesh& result) {
-  Refiner refiner(mesh, options);
+  Refiner refiner(mesh, options, mean_irradiance);
   for (std::size_t i = 0; i < mesh.sheets.size(); ++i) {
     const Sheet& sheet = mesh.sheets[SheetId(i)];
     FineSheet s;
@@ -235,10 +242,10 @@ void refine_mesh(WorkMesh& mesh, const IdVector<TriangleId, ShownSides>& shown,
     s.primary = !sheet.back || !shown[sheet.source].front;
     refiner.add(s);
   }
-  result.readings += refiner.read_new(mean_irradiance, read);
+  result.readings += refiner.read_new(read);
   while (!progress.cancelled() && refiner.choose()) {
     refiner.subdivide();
-    result.readings += refiner.read_new(mean_irradiance, read);
+    result.readings += refiner.read_new(read);
     ++result.rounds;
     progress.report("lit mesh", 1.0 - 1.0 / static_cast<double>(result.rounds + 1));
   }

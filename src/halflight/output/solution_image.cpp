@@ -74,7 +74,7 @@ Image solution_image(const SolverState& state, const SolutionReader& reader, con
     const Vec3 n =
         glm::normalize(world.geometry.scaled_normal(hit->triangle)) * (hit->front ? 1.f : -1.f);
     const auto indirect = (hit->front ? front : back).indirect(x, n);
-    const Rgb irradiance = indirect ? reader.direct(x, n) + reader.sky(x, n) + *indirect
+    const Rgb irradiance = indirect ? reader.direct(x, n) + *indirect
                                     : reader.read({x, n, hit->triangle}).irradiance();
     Rgb result = reflectance_at(world.scene, world.geometry, hit->triangle, hit->barycentric) *
                  irradiance / kPi;

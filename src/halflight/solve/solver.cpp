@@ -55,7 +55,7 @@ std::vector<ElementPair> take_failing_links(SolverState& state, float threshold,
 
 // The elements stay; light from emitters is read exactly on each, the rest travels along rays.
 std::vector<ReceiverLink> replace_by_sampled_links(SolverState& state, float threshold) {
-  const EmitterTree emitters(*state.world);
+  const EmitterTree emitters(*state.world, find_emitters(*state.world));
   state.emission_is_given = true;
   std::fill(state.given_light_known.begin(), state.given_light_known.end(), 0);
   update_given_light(state, threshold, &emitters);

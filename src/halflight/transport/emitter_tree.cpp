@@ -20,13 +20,14 @@ float cosine_of_difference(float cos_a, float cos_b) {
 
 }  // namespace
 
-EmitterTree::EmitterTree(const World& world) : world_(&world) {
+std::vector<EmittingSide> find_emitters(const World& world) {
   const Geometry& g = world.geometry;
+  std::vector<EmittingSide> emitters;
   for (std::uint32_t i = 0; i < g.triangles.size(); ++i) {
     const TriangleId t(i);
     const Material& m = world.scene.materials[g.materials[t]];
     if (!m.emits()) continue;
-    Emitter e;
+    EmittingSide e;
     e.triangle = t;
     e.textured = m.emission_texture.valid();
     const std::uint32_t samples = e.textured ? kTextureSamples : 1;
@@ -35,19 +36,24 @@ EmitterTree::EmitterTree(const World& world) : world_(&world) {
                     static_cast<float>(samples);
     e.power = average(e.radiance) * 0.5f * glm::length(g.scaled_normal(t));
     if (!(e.power > 0.f)) continue;
-    emitters_.push_back(e);
+    emitters.push_back(e);
     if (!m.double_sided) continue;
     e.back = true;
-    emitters_.push_back(e);
+    emitters.push_back(e);
   }
+  return emitters;
+}
+
+EmitterTree::EmitterTree(const World& world, std::vector<EmittingSide> emitters)
+    : world_(&world), emitters_(std::move(emitters)) {
   if (emitters_.empty()) return;
   nodes_.reserve(2 * emitters_.size());
   build(0, static_cast<std::uint32_t>(emitters_.size()));
   float sum = 0.f;
-  for (const Emitter& e : emitters_) cumulative_power_.push_back(sum += e.power);
+  for (const EmittingSide& e : emitters_) cumulative_power_.push_back(sum += e.power);
 }
 
-Vec3 EmitterTree::normal_of(const Emitter& e) const {
+Vec3 EmitterTree::normal_of(const EmittingSide& e) const {
   return glm::normalize(world_->geometry.scaled_normal(e.triangle)) * (e.back ? -1.f : 1.f);
 }
 
@@ -59,7 +65,7 @@ std::uint32_t EmitterTree::build(std::uint32_t first, std::uint32_t count) {
   node.first = first;
   node.count = count;
   Bounds3f centers;
-  const auto center = [&](const Emitter& e) {
+  const auto center = [&](const EmittingSide& e) {
     const auto [a, b, c] = g.corners(e.triangle);
     return (a + b + c) / 3.f;
   };
@@ -80,7 +86,7 @@ std::uint32_t EmitterTree::build(std::uint32_t first, std::uint32_t count) {
     const Vec3 e = centers.extent();
     const int axis = e.x >= e.y && e.x >= e.z ? 0 : (e.y >= e.z ? 1 : 2);
     const auto begin = emitters_.begin() + first;
-    std::stable_sort(begin, begin + count, [&](const Emitter& a, const Emitter& b) {
+    std::stable_sort(begin, begin + count, [&](const EmittingSide& a, const EmittingSide& b) {
       return center(a)[axis] < center(b)[axis];
     });
     build(first, count / 2);
@@ -110,7 +116,7 @@ bool EmitterTree::cannot_light(const Node& node, const Vec3& x, const Vec3& n) c
 float EmitterTree::expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const {
   if (cannot_light(node, x, n)) return 0.f;
   if (node.right == 0) {
-    const Emitter& e = emitters_[node.first];
+    const EmittingSide& e = emitters_[node.first];
     const auto corners = world_->geometry.corners(e.triangle);
     if (glm::dot(normal_of(e), x - corners[0]) <= 0.f) return 0.f;
     return kPi * average(e.radiance) * polygon_form_factor(x, n, corners);
@@ -152,7 +158,7 @@ std::vector<EmitterTree::CutNode> EmitterTree::choose_cut(const Vec3& x, const V
   return cut;
 }
 
-Rgb EmitterTree::from_triangle(const Emitter& e, const Vec3& x, const Vec3& n, int rays,
+Rgb EmitterTree::from_triangle(const EmittingSide& e, const Vec3& x, const Vec3& n, int rays,
                                int more_rays, Vec2 shift) const {
   const Geometry& g = world_->geometry;
   const auto corner = g.corners(e.triangle);
@@ -197,7 +203,7 @@ Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int 
     const float stratum = (static_cast<float>(k) + shift.x) / static_cast<float>(rays);
     const auto found = std::upper_bound(begin, begin + node.count, before + stratum * node.power);
     const auto offset = std::min<std::ptrdiff_t>(found - begin, node.count - 1);
-    const Emitter& e = emitters_[node.first + static_cast<std::uint32_t>(offset)];
+    const EmittingSide& e = emitters_[node.first + static_cast<std::uint32_t>(offset)];
     const auto corner = g.corners(e.triangle);
     const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(k), shift));
     const Vec3 y = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);

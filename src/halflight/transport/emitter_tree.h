@@ -19,9 +19,21 @@ struct DirectLightOptions {
   float smallest_angle = 0.01f;
 };
 
+// One side of a triangle that shines with a radiance of its own.
+struct EmittingSide {
+  TriangleId triangle;
+  bool back = false;  // from the clockwise side
+  Rgb radiance{0.f};  // mean over the triangle
+  bool textured = false;
+  float power = 0.f;  // average(radiance) * area
+};
+
+// All emitting sides of the scene's triangles.
+std::vector<EmittingSide> find_emitters(const World& world);
+
 class EmitterTree {
  public:
-  explicit EmitterTree(const World& world);
+  EmitterTree(const World& world, std::vector<EmittingSide> emitters);
   bool empty() const { return emitters_.empty(); }
 
   // Irradiance at x with unit normal n from all emitting surfaces, shadows by exact rays. With the
@@ -31,13 +43,6 @@ class EmitterTree {
                  Vec2 shift = Vec2(0.5f)) const;
 
  private:
-  struct Emitter {
-    TriangleId triangle;
-    bool back = false;  // emits from the clockwise side
-    Rgb radiance{0.f};  // mean over the triangle
-    bool textured = false;
-    float power = 0.f;  // average(radiance) * area
-  };
   struct Node {
     Bounds3f box;
     Vec3 axis{0.f};          // of the cone that holds all emitter normals
@@ -55,13 +60,13 @@ class EmitterTree {
   bool cannot_light(const Node& node, const Vec3& x, const Vec3& n) const;
   float expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const;
   std::vector<CutNode> choose_cut(const Vec3& x, const Vec3& n, const DirectLightOptions&) const;
-  Vec3 normal_of(const Emitter& e) const;
-  Rgb from_triangle(const Emitter& e, const Vec3& x, const Vec3& n, int rays, int more_rays,
+  Vec3 normal_of(const EmittingSide& e) const;
+  Rgb from_triangle(const EmittingSide& e, const Vec3& x, const Vec3& n, int rays, int more_rays,
                     Vec2 shift) const;
   Rgb from_group(const Node& node, const Vec3& x, const Vec3& n, int rays, Vec2 shift) const;
 
   const World* world_;
-  std::vector<Emitter> emitters_;
+  std::vector<EmittingSide> emitters_;
   std::vector<float> cumulative_power_;  // after each emitter, over all
   std::vector<Node> nodes_;
 };
