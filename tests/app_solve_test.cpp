@@ -1,0 +1,225 @@
+// The solve command from outside: exit status, files, units, threads, interruption.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "gltf_check.h"
+#include "shared_scenes.h"
+#include "temporary_folder.h"
+
+namespace halflight {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A closed room of 4 x 3 x 5 units times `scale` with a lamp under its ceiling and a table.
+std::string room_obj(double scale) {
+  std::string obj = "mtllib room.mtl\n";
+  int next = 1;
+  const auto quad = [&](std::vector<std::array<double, 3>> corners) {
+    for (const auto& c : corners)
+      obj += fmt::format("v {} {} {}\n", scale * c[0], scale * c[1], scale * c[2]);
+    obj += fmt::format("f {} {} {} {}\n", next, next + 1, next + 2, next + 3);
+    next += 4;
+  };
+  obj += "usemtl wall\n";
+  quad({{0, 0, 0}, {0, 0, 5}, {4, 0, 5}, {4, 0, 0}});
+  quad({{0, 3, 0}, {4, 3, 0}, {4, 3, 5}, {0, 3, 5}});
+  quad({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}});
+  quad({{0, 0, 5}, {0, 3, 5}, {4, 3, 5}, {4, 0, 5}});
+  quad({{0, 0, 0}, {0, 3, 0}, {0, 3, 5}, {0, 0, 5}});
+  quad({{4, 0, 0}, {4, 0, 5}, {4, 3, 5}, {4, 3, 0}});
+  quad({{1, 1, 1}, {1, 1, 3}, {3, 1, 3}, {3, 1, 1}});  // the table's top
+  obj += "usemtl lamp\n";
+  quad({{1.5, 2.9, 2}, {2.5, 2.9, 2}, {2.5, 2.9, 3}, {1.5, 2.9, 3}});
+  return obj;
+}
+
+constexpr const char* kMaterials =
+    "newmtl wall\nKd 0.7 0.6 0.5\nnewmtl lamp\nKd 0.5 0.5 0.5\nKe 10 9 8\n";
+
+std::string sensors(double scale) {
+  std::string lines;
+  for (int i = 0; i < 8; ++i)
+    lines += fmt::format("{} 0 {} 0 1 0\n", scale * (0.3 + 0.45 * i), scale * (0.4 + 0.5 * i));
+  lines += fmt::format("{} {} {} 0 1 0\n", scale * 2.0, scale, scale * 2.0);
+  lines += fmt::format("{} {} 0 0 0 1\n", scale * 2.0, scale * 1.5);
+  return lines;
+}
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// The last three numbers of each line.
+std::vector<float> irradiance_of(const std::string& table) {
+  std::vector<float> values;
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::vector<float> numbers;
+    for (float x; words >> x;) numbers.push_back(x);
+    if (numbers.size() == 9) values.insert(values.end(), numbers.end() - 3, numbers.end());
+  }
+  return values;
+}
+
+class SolveCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_.write("room.mtl", kMaterials);
+    folder_.write("room.obj", room_obj(1.0));
+    folder_.write("sensors.txt", sensors(1.0));
+  }
+  fs::path path(const std::string& name) const { return folder_.path() / name; }
+  std::string text(const std::string& name) const { return read(path(name)); }
+
+  // What it prints goes to files "out" and "err".
+  int run(const std::string& arguments) const {
+    const std::string line = "cd '" + folder_.path().string() + "' && '" HALFLIGHT_BINARY "' " +
+                             arguments + " >out 2>err";
+    const int status = std::system(line.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  // The same, with a signal after `delay`.
+  int run_and_signal(const std::string& arguments, int signal, std::chrono::milliseconds delay) {
+    const std::string line = "cd '" + folder_.path().string() +
+                             "' && exec '" HALFLIGHT_BINARY "' " + arguments + " >out 2>err";
+    const pid_t child = fork();
+    if (child == 0) {
+      execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    std::this_thread::sleep_for(delay);
+    kill(child, signal);
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SolveCommand, WritesTheSameBytesWhateverTheThreads) {
+  for (const char* links : {"refined", "sampled"}) {
+    const std::string common =
+        std::string("solve room.obj --feature-size 50cm --progress none --links ") + links +
+        " --points sensors.txt";
+    ASSERT_EQ(run(common + " -o one.glb --points-out one.txt --threads 1"), 0) << text("err");
+    ASSERT_EQ(run(common + " -o two.glb --points-out two.txt --threads 2"), 0) << text("err");
+    EXPECT_EQ(irradiance_of(text("one.txt")).size(), 30u);
+    EXPECT_EQ(text("one.txt"), text("two.txt"));
+    EXPECT_GT(text("one.glb").size(), 1000u);
+    EXPECT_EQ(text("one.glb"), text("two.glb"));
+  }
+}
+
+TEST_F(SolveCommand, LitSceneIsValidGltf) {
+  if (!test::have_gltf_validator()) GTEST_SKIP() << "the glTF validator is not installed";
+  ASSERT_EQ(run("solve room.obj --feature-size 50cm --progress none -o lit.glb"), 0);
+  EXPECT_TRUE(test::is_valid_gltf(path("lit.glb")));
+}
+
+TEST_F(SolveCommand, LightDoesNotDependOnTheUnit) {
+  const std::string common = " --feature-size 25cm --progress none";
+  ASSERT_EQ(run("solve room.obj --points sensors.txt --points-out m.txt" + common), 0);
+  folder_.write("room_cm.obj", room_obj(100.0));
+  folder_.write("sensors_cm.txt", sensors(100.0));
+  ASSERT_EQ(run("solve room_cm.obj --unit cm --points sensors_cm.txt --points-out cm.txt" + common),
+            0);
+  const auto metres = irradiance_of(text("m.txt")), centimetres = irradiance_of(text("cm.txt"));
+  ASSERT_EQ(metres.size(), 30u);
+  ASSERT_EQ(centimetres.size(), 30u);
+  for (std::size_t i = 0; i < metres.size(); ++i) {
+    EXPECT_GT(metres[i], 0.f);
+    EXPECT_NEAR(centimetres[i] / metres[i], 1.f, 0.01f) << "sensor " << i / 3;
+  }
+}
+
+TEST_F(SolveCommand, SensorsGoToStandardOutputWithoutAFile) {
+  ASSERT_EQ(run("solve room.obj --feature-size 50cm --points sensors.txt"), 0);
+  EXPECT_EQ(irradiance_of(text("out")).size(), 30u);
+}
+
+TEST_F(SolveCommand, ReportBalancesItsEnergy) {
+  ASSERT_EQ(run("solve room.obj --feature-size 50cm --progress none --report report.json"), 0);
+  const auto report = read_json(path("report.json"));
+  for (const char* key : {"input", "settings", "phases", "wall_seconds", "cpu_seconds",
+                          "peak_rss_bytes", "rays", "clusters", "elements", "links", "sweeps",
+                          "estimated_error", "energy", "history", "warnings"})
+    EXPECT_TRUE(report.contains(key)) << key;
+  // 10 W/(m2 sr) in the red over 1 m2; nothing leaves the closed room.
+  EXPECT_NEAR(report["energy"]["emitted"][0].get<double>(), 31.4159, 0.01);
+  EXPECT_NEAR(report["energy"]["escaped"][0].get<double>(), 0.0, 0.32);
+}
+
+TEST_F(SolveCommand, RejectsBadUseInOneLine) {
+  for (const char* arguments :
+       {"solve missing.obj", "solve room.obj --feature-size huge",
+        "solve room.obj --feature-size 0", "solve room.obj --feature-size -1",
+        "solve room.obj --error 0%", "solve room.obj --error x", "solve room.obj --time soon",
+        "solve room.obj --links woven", "solve room.obj --threads -1", "solve room.obj --unit mile",
+        "solve room.obj --up x", "solve room.obj --points missing.txt", "solve room.obj --sky 1,2",
+        "solve", "solve room.obj --sky -1,0,0", "solve room.obj --no-such-option",
+        "solve room.obj --feature-size nan", "solve room.obj --feature-size inf"}) {
+    EXPECT_EQ(run(std::string(arguments) + " -o lit.glb --progress none"), 1) << arguments;
+    const std::string err = text("err");
+    EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << arguments << "\n" << err;
+    EXPECT_FALSE(fs::exists(path("lit.glb"))) << arguments;
+  }
+}
+
+TEST_F(SolveCommand, UnwritablePlaceIsASystemFailure) {
+  EXPECT_EQ(run("solve room.obj --feature-size 1 --progress none -o no/such/folder/lit.glb"), 2);
+}
+
+// An office at a fine feature size takes far longer than a second.
+class LongSolve : public SolveCommand {
+ protected:
+  void SetUp() override {
+    SolveCommand::SetUp();
+    ASSERT_EQ(run("scene office --count 100 -o office.glb"), 0);
+    folder_.write("desk.txt", "0.5 0 0.5 0 1 0\n-0.5 0 0.5 0 1 0\n");
+  }
+  void expect_valid_light() const {
+    const auto values = irradiance_of(text("desk_out.txt"));
+    ASSERT_EQ(values.size(), 6u);
+    for (const float e : values) EXPECT_TRUE(std::isfinite(e) && e >= 0.f) << e;
+  }
+  static constexpr const char* kLong =
+      "solve office.glb --feature-size 3mm --error 0.2% --progress none --points desk.txt "
+      "--points-out desk_out.txt --report report.json";
+};
+
+TEST_F(LongSolve, InterruptedWritesAValidResult) {
+  EXPECT_EQ(run_and_signal(kLong, SIGINT, std::chrono::milliseconds(1500)), 3);
+  expect_valid_light();
+}
+
+TEST_F(LongSolve, DeadlineWritesAValidResult) {
+  EXPECT_EQ(run(std::string(kLong) + " --time 1s"), 4);
+  expect_valid_light();
+  EXPECT_LT(read_json(path("report.json"))["wall_seconds"].get<double>(), 10.0);
+}
+
+TEST_F(SolveCommand, GenerousDeadlineMeetsTheGoal) {
+  EXPECT_EQ(run("solve room.obj --feature-size 50cm --progress none --time 10m -o lit.glb"), 0);
+  EXPECT_TRUE(fs::exists(path("lit.glb")));
+}
+
+}  // namespace
+}  // namespace halflight

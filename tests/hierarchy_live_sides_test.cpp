@@ -1,0 +1,119 @@
+// Which sides can see light: none inside closed bodies, all that face a lit room.
+#include <gtest/gtest.h>
+
+#include "halflight/hierarchy/live_sides.h"
+#include "halflight/scene/procedural/assembly.h"
+#include "halflight/scene/procedural/shapes.h"
+
+namespace halflight {
+namespace {
+
+const Bounds3f kRoom{Vec3(0.f), Vec3(4.f, 3.f, 4.f)};
+const Bounds3f kCrate{{1, 0.5f, 1}, {2, 1.5f, 2}};
+
+// A room, and in it a closed crate of the given material.
+class RoomWithCrate {
+ public:
+  Scene scene;
+  MaterialId wall = add_material(scene, "wall", Rgb(0.7f));
+  MaterialId crate = add_material(scene, "crate", Rgb(0.5f));
+
+  RoomWithCrate() { add_room(scene, kRoom, {wall, wall, wall}); }
+  void add_crate(const Bounds3f& box) {
+    MeshParts parts;
+    append_box(parts[crate], box);
+    add_node(scene, "crate", add_mesh(scene, "crate", std::move(parts)));
+  }
+
+  // Live sides that see the crate's inside (of surfaces within `box`), and all in total.
+  struct Live {
+    int inside = 0, outside = 0;  // of the box's surfaces: backs, fronts
+    int room_fronts = 0, room_backs = 0;
+  };
+  Live live_sides(const Bounds3f& box) const {
+    const World world(scene);
+    const Surfaces surfaces = build_surfaces(world.geometry);
+    const auto live = find_live_sides(world.scene, world.geometry, surfaces, world.rays);
+    Live count;
+    for (std::size_t i = 0; i < surfaces.surfaces.size(); ++i) {
+      const SurfaceId s(i);
+      const Bounds3f& own = surfaces[s].box;
+      const bool front = live[side_of(s, false)] != 0, back = live[side_of(s, true)] != 0;
+      if (own.longest_side() > 2.5f) {
+        count.room_fronts += front;
+        count.room_backs += back;
+      } else if (box.contains(own.lower) && box.contains(own.upper)) {
+        count.outside += front;
+        count.inside += back;
+      }
+    }
+    return count;
+  }
+};
+
+TEST(LiveSides, InsideOfARoomLivesAndInsideOfACrateDoesNot) {
+  RoomWithCrate room;
+  room.add_crate(kCrate);
+  const auto live = room.live_sides(kCrate);
+  EXPECT_EQ(live.room_fronts, 6);
+  EXPECT_EQ(live.room_backs, 0);
+  EXPECT_EQ(live.outside, 6);
+  EXPECT_EQ(live.inside, 0);
+}
+
+TEST(LiveSides, SkyWakesTheOutsideOfTheRoom) {
+  RoomWithCrate room;
+  room.scene.sky = Rgb(1.f);
+  EXPECT_EQ(room.live_sides(kCrate).room_backs, 6);
+}
+
+TEST(LiveSides, ClearCrateIsLitInside) {
+  RoomWithCrate room;
+  Material& m = room.scene.materials[room.crate];
+  m.alpha_mode = AlphaMode::blend;
+  m.alpha = 0.2f;
+  room.add_crate(kCrate);
+  EXPECT_EQ(room.live_sides(kCrate).inside, 6);
+}
+
+TEST(LiveSides, CrateThatGlowsOnBothSidesIsLitInside) {
+  RoomWithCrate room;
+  room.scene.materials[room.crate].emission = Rgb(1.f);
+  room.add_crate(kCrate);
+  EXPECT_EQ(room.live_sides(kCrate).inside, 0);
+  room.scene.materials[room.crate].double_sided = true;
+  EXPECT_EQ(room.live_sides(kCrate).inside, 6);
+}
+
+TEST(LiveSides, CrateAroundALampIsLitInside) {
+  RoomWithCrate room;
+  room.add_crate(kCrate);
+  const MaterialId lamp = add_emitter(room.scene, "lamp", Rgb(5.f), Rgb(0.5f));
+  MeshParts parts;
+  append_box(parts[lamp], {kCrate.center() - 0.1f, kCrate.center() + 0.1f});
+  add_node(room.scene, "lamp", add_mesh(room.scene, "lamp", std::move(parts)));
+  EXPECT_EQ(room.live_sides(kCrate).inside, 6);
+}
+
+// A tiny lamp that rays from the walls rarely meet still lights them.
+TEST(LiveSides, CrateAroundAPinpointLampIsLitInside) {
+  RoomWithCrate room;
+  room.add_crate(kCrate);
+  const MaterialId lamp = add_emitter(room.scene, "lamp", Rgb(5000.f), Rgb(0.5f));
+  MeshParts parts;
+  append_box(parts[lamp], {kCrate.center() - 0.003f, kCrate.center() + 0.003f});
+  add_node(room.scene, "lamp", add_mesh(room.scene, "lamp", std::move(parts)));
+  EXPECT_EQ(room.live_sides(kCrate).inside, 6);
+}
+
+TEST(LiveSides, CrateWithoutALidIsLitInside) {
+  RoomWithCrate room;
+  MeshParts parts;
+  for (const Side side : kAllSides)
+    if (side != Side::y_high) append_quad(parts[room.crate], side_of(kCrate, side));
+  add_node(room.scene, "open crate", add_mesh(room.scene, "open crate", std::move(parts)));
+  EXPECT_EQ(room.live_sides(kCrate).inside, 5);
+}
+
+}  // namespace
+}  // namespace halflight

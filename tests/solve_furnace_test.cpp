@@ -1,0 +1,57 @@
+// The furnace: where every surface of a closed box emits L and reflects rho, B = pi L / (1 - rho)
+// everywhere, whatever stands inside.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <tuple>
+
+#include "halflight/scene/procedural/furnace.h"
+#include "solved_scene.h"
+
+namespace halflight {
+namespace {
+
+constexpr float kReflectance = 0.6f;
+constexpr float kExpected = kPi / (1.f - kReflectance);  // E = B
+
+class Furnace : public ::testing::TestWithParam<std::tuple<LinkMaker, int>> {
+ protected:
+  SolverState solved() const {
+    FurnaceParameters furnace;
+    furnace.reflectance = kReflectance;
+    furnace.boxes = std::get<1>(GetParam());
+    return testing::solve(furnace_scene(furnace),
+                          testing::options_of(std::get<0>(GetParam()), 0.2f));
+  }
+};
+
+TEST_P(Furnace, EverySensorReadsTheSameLight) {
+  const SolverState state = solved();
+  const auto irradiance = testing::read_irradiance(state, testing::scatter_sensors(state, 200));
+  EXPECT_NEAR(testing::mean(irradiance) / kExpected, 1.f, 0.005f);
+  for (const float e : irradiance) EXPECT_NEAR(e / kExpected, 1.f, 0.03f);
+}
+
+TEST_P(Furnace, EverySurfaceHasTheSameRadiosityOnTheMean) {
+  const SolverState state = solved();
+  EXPECT_NEAR(mean_irradiance(state) / kExpected, 1.f, 0.005f);
+  EXPECT_NEAR(average(state.radiosity[state.tree.root()]) / kExpected, 1.f, 0.005f);
+}
+
+TEST_P(Furnace, AbsorbsWhatItEmits) {
+  const EnergyBalance balance = energy_balance(solved());
+  EXPECT_NEAR(average(balance.absorbed) / average(balance.emitted), 1.f, 0.005f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Boxes, Furnace,
+                         ::testing::Combine(::testing::Values(LinkMaker::refined,
+                                                              LinkMaker::sampled),
+                                            ::testing::Values(0, 27)),
+                         [](const auto& test) {
+                           const bool refined = std::get<0>(test.param) == LinkMaker::refined;
+                           return std::string(refined ? "Refined" : "Sampled") +
+                                  std::to_string(std::get<1>(test.param));
+                         });
+
+}  // namespace
+}  // namespace halflight

@@ -1,0 +1,159 @@
+// The solver's sensors against the path tracer, which shares no radiosity code with it.
+#include <gtest/gtest.h>
+
+#include "halflight/rays/reference_sensors.h"
+#include "halflight/scene/procedural/cornell_box.h"
+#include "halflight/scene/procedural/office.h"
+#include "quad_scene.h"
+#include "solved_scene.h"
+
+namespace halflight {
+namespace {
+
+using testing::QuadScene;
+
+std::vector<float> path_traced(const World& world, const std::vector<ReadingPoint>& points,
+                               std::uint32_t samples) {
+  std::vector<WorldSensor> sensors;
+  for (const ReadingPoint& p : points) sensors.push_back({p.position, p.normal});
+  std::vector<float> irradiance;
+  for (const auto& e : reference_irradiance(PathTracer(world), sensors, samples, 5, Progress()))
+    irradiance.push_back(average(e.mean));
+  return irradiance;
+}
+
+struct Deviation {
+  float median = 0.f, high = 0.f;  // of |E - E_ref| / E_ref: median and 95 %
+  float mean_ratio = 0.f;          // of the two means
+};
+
+Deviation compare(const SolverState& state, std::size_t sensors, std::uint32_t samples) {
+  const auto points = testing::scatter_sensors(state, sensors);
+  const auto reference = path_traced(*state.world, points, samples);
+  const auto solved = testing::read_irradiance(state, points);
+  const float floor = 0.01f * testing::mean(reference);  // nearly dark: judged against the mean
+  std::vector<float> deviation;
+  for (std::size_t i = 0; i < sensors; ++i)
+    deviation.push_back(std::abs(solved[i] - reference[i]) / std::max(reference[i], floor));
+  return {testing::quantile(deviation, 0.5f), testing::quantile(deviation, 0.95f),
+          testing::mean(solved) / testing::mean(reference)};
+}
+
+TEST(SolvedLight, OfTheCornellBoxIsThatOfThePathTracer) {
+  for (const LinkMaker links : {LinkMaker::refined, LinkMaker::sampled}) {
+    const SolverState state =
+        testing::solve(cornell_box_scene(), testing::options_of(links, 0.01f));
+    const Deviation d = compare(state, 150, 4096);
+    EXPECT_LT(d.median, 0.02f);
+    EXPECT_LT(d.high, 0.08f);
+    EXPECT_NEAR(d.mean_ratio, 1.f, 0.01f);
+  }
+}
+
+TEST(SolvedLight, OfASmallOfficeIsThatOfThePathTracer) {
+  OfficeParameters p;
+  p.count = 60;
+  const SolverState state =
+      testing::solve(office_scene(p), testing::options_of(LinkMaker::sampled, 0.2f));
+  const Deviation d = compare(state, 150, 2048);
+  EXPECT_LT(d.median, 0.04f);
+  EXPECT_LT(d.high, 0.20f);
+  EXPECT_NEAR(d.mean_ratio, 1.f, 0.015f);
+}
+
+// Rooms of one reflectance lit in odd ways. Each sensor's reference is known to about 0.5 %.
+void expect_as_path_traced(const QuadScene& scene, float feature_size) {
+  const SolverState state =
+      testing::solve(scene.scene, testing::options_of(LinkMaker::sampled, feature_size));
+  const Deviation d = compare(state, 60, 1u << 14);
+  EXPECT_LT(d.median, 0.02f);
+  EXPECT_LT(d.high, 0.10f);
+  EXPECT_NEAR(d.mean_ratio, 1.f, 0.01f);
+}
+
+// A room of 3 x 2.5 x 4 m whose wall at x = 0 has a window of 1 x 2 m.
+QuadScene room_with_window() {
+  QuadScene scene;
+  const MaterialId white = scene.material(0.6f);
+  scene.quad({0, 0, 0}, {0, 0, 4}, {3, 0, 0}, white);
+  scene.quad({0, 2.5f, 0}, {3, 0, 0}, {0, 0, 4}, white);
+  scene.quad({0, 0, 0}, {3, 0, 0}, {0, 2.5f, 0}, white);
+  scene.quad({0, 0, 4}, {0, 2.5f, 0}, {3, 0, 0}, white);
+  scene.quad({3, 0, 0}, {0, 0, 4}, {0, 2.5f, 0}, white);
+  scene.quad({0, 0, 0}, {0, 2.5f, 0}, {0, 0, 1}, white);
+  scene.quad({0, 0, 3}, {0, 2.5f, 0}, {0, 0, 1}, white);
+  scene.quad({0, 0, 1}, {0, 0.8f, 0}, {0, 0, 2}, white);
+  scene.quad({0, 1.8f, 1}, {0, 0.7f, 0}, {0, 0, 2}, white);
+  return scene;
+}
+
+TEST(SolvedLight, SkyThroughAPaneOfGlass) {
+  QuadScene scene = room_with_window();
+  scene.quad({0, 0.8f, 1}, {0, 1, 0}, {0, 0, 2}, scene.pane(0.1f));
+  scene.scene.sky = Rgb(2.f);
+  expect_as_path_traced(scene, 0.2f);
+}
+
+TEST(SolvedLight, PointLightAmongBlocks) {
+  QuadScene scene;
+  scene.box({0, 0, 0}, {3, 2.5f, 4}, scene.material(0.6f), true);
+  scene.box({0.5f, 0.01f, 0.5f}, {1.2f, 1.4f, 1.2f}, scene.material(0.4f), false);
+  Light light;
+  light.intensity = Rgb(100.f);
+  scene.light_shining_down(light, {1.8f, 2, 1.7f});
+  expect_as_path_traced(scene, 0.1f);
+}
+
+TEST(SolvedLight, SheetThatGlowsOnBothSides) {
+  QuadScene scene;
+  scene.box({0, 0, 0}, {3, 2.5f, 4}, scene.material(0.6f), true);
+  scene.quad({1, 1, 1}, {1, 0.3f, 0}, {0, 0.4f, 1}, scene.material(0.3f, 5.f, true));
+  expect_as_path_traced(scene, 0.2f);
+}
+
+// A leaf is a square with a hole in its alpha map; it lies under a lamp and lets light through.
+TEST(SolvedLight, HolesInLeavesPassLight) {
+  QuadScene scene;
+  scene.box({0, 0, 0}, {3, 2.5f, 4}, scene.material(0.6f), true);
+  Texture holes;
+  holes.width = holes.height = 4;
+  holes.texels.assign(16, {255, 255, 255, 255});
+  for (const std::size_t i : {5u, 6u, 9u, 10u}) holes.texels[i] = {255, 255, 255, 0};
+  const MaterialId leaf = scene.material(0.5f);
+  scene.scene.materials[leaf].alpha_mode = AlphaMode::blend;
+  scene.scene.materials[leaf].alpha_texture.texture = scene.scene.textures.push_back(holes);
+  scene.quad({0.5f, 1.2f, 0.8f}, {0, 0, 2.4f}, {2, 0, 0}, leaf);
+  scene.quad({1, 2.4f, 1.5f}, {1, 0, 0}, {0, 0, 1}, scene.material(0.5f, 8.f));
+  expect_as_path_traced(scene, 0.1f);
+}
+
+// Large lamps in a black room: direct light alone, from the closed-form view of the emitter tree.
+TEST(EmitterTreeLight, IsTheDirectLightOfThePathTracer) {
+  QuadScene scene;
+  const MaterialId black = scene.material(0.f);
+  scene.box({0, 0, 0}, {3, 2.5f, 4}, black, true);
+  scene.box({1, 0.01f, 1}, {1.8f, 1.2f, 1.9f}, black, false);
+  for (int i = 0; i < 5; ++i)
+    for (int k = 0; k < 5; ++k) {
+      const float size = 0.05f + 0.05f * static_cast<float>(i);
+      scene.quad({0.3f + 0.5f * static_cast<float>(i), 2.4f, 0.3f + 0.7f * static_cast<float>(k)},
+                 {size, 0, 0}, {0, 0, 0.3f}, scene.material(0.f, 1.f + static_cast<float>(k)));
+    }
+  const SolverState state =
+      make_state(make_world(scene.scene), testing::options_of(LinkMaker::sampled, 0.1f));
+  const auto points = testing::scatter_sensors(state, 150);
+  const auto reference = path_traced(*state.world, points, 1u << 14);
+  const EmitterTree emitters(*state.world);
+  std::vector<float> direct, deviation;
+  const float scale = testing::mean(reference);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    direct.push_back(average(emitters.irradiance(points[i].position, points[i].normal, {})));
+    deviation.push_back(std::abs(direct[i] - reference[i]) / std::max(reference[i], 0.02f * scale));
+  }
+  EXPECT_LT(testing::quantile(deviation, 0.5f), 0.01f);
+  EXPECT_LT(testing::quantile(deviation, 0.95f), 0.06f);
+  EXPECT_NEAR(testing::mean(direct) / scale, 1.f, 0.005f);
+}
+
+}  // namespace
+}  // namespace halflight

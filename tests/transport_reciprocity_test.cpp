@@ -1,0 +1,72 @@
+// Reciprocity of sampled transfers: A_r F_rs = A_s F_sr, with and without something in between.
+#include <gtest/gtest.h>
+
+#include "halflight/transport/transfer.h"
+#include "quad_scene.h"
+#include "solved_scene.h"
+
+namespace halflight {
+namespace {
+
+using testing::QuadScene;
+
+constexpr int kSamples = 4096;
+
+// A floor of 2 x 1 m and above it a panel of 1 x 0.5 m; an opaque or clear pane half across.
+SolverState panel_over_floor(float pane_opacity) {
+  QuadScene scene;
+  const MaterialId glowing = scene.material(0.f, 1.f);
+  scene.quad({0, 0, 0}, {0, 0, 1}, {2, 0, 0}, glowing);
+  scene.quad({0.3f, 1, 0.2f}, {1, 0, 0}, {0, 0, 0.5f}, glowing);
+  if (pane_opacity > 0.f)
+    scene.quad({0, 0.5f, -1}, {0.8f, 0, 0}, {0, 0, 3}, scene.pane(pane_opacity));
+  return make_state(make_world(scene.scene), testing::options_of(LinkMaker::refined, 0.1f));
+}
+
+ElementId front_of_triangle(const SolverState& state, std::size_t triangle) {
+  return state.tree.side_root(side_of(state.surfaces->of_triangle[TriangleId(triangle)], false));
+}
+
+float weight(const SolverState& state, ElementId receiver, ElementId source) {
+  const TransferScene scene{state.tree, state.world->rays, state.radiosity};
+  return estimate_transfer(scene, receiver, source, kSamples, 1).weight;
+}
+
+class Reciprocity : public ::testing::TestWithParam<float> {};
+
+TEST_P(Reciprocity, BothEndsExchangeTheSamePower) {
+  const SolverState state = panel_over_floor(GetParam());
+  const ElementId floor = front_of_triangle(state, 0), panel = front_of_triangle(state, 2);
+  const float to_floor = state.tree[floor].area * weight(state, floor, panel);
+  const float to_panel = state.tree[panel].area * weight(state, panel, floor);
+  EXPECT_GT(to_floor, 0.01f);
+  EXPECT_NEAR(to_floor, to_panel, 0.015f * to_floor);
+}
+
+INSTANTIATE_TEST_SUITE_P(OpacityOfThePane, Reciprocity, ::testing::Values(0.f, 0.4f, 1.f));
+
+TEST(Transfer, ATranslucentPaneInFrontOfEverythingScalesTheWeight) {
+  QuadScene scene;
+  const MaterialId glowing = scene.material(0.f, 1.f);
+  scene.quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, glowing);
+  scene.quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, glowing);
+  scene.quad({-1, 0.5f, -1}, {3, 0, 0}, {0, 0, 3}, scene.pane(0.25f));
+  const SolverState state =
+      make_state(make_world(scene.scene), testing::options_of(LinkMaker::refined, 0.1f));
+  EXPECT_NEAR(weight(state, front_of_triangle(state, 0), front_of_triangle(state, 2)),
+              0.75f * 0.199825f, 0.01f * 0.199825f);
+}
+
+TEST(Transfer, ElementsThatTurnTheirBacksExchangeNothing) {
+  const SolverState state = panel_over_floor(0.f);
+  const SurfaceId floor = state.surfaces->of_triangle[TriangleId(0)];
+  const ElementId under_floor = state.tree.side_root(side_of(floor, true));
+  const ElementId panel = front_of_triangle(state, 2);
+  if (under_floor.valid()) {
+    EXPECT_TRUE(back_facing(state.tree, under_floor, panel));
+  }
+  EXPECT_FALSE(back_facing(state.tree, front_of_triangle(state, 0), panel));
+}
+
+}  // namespace
+}  // namespace halflight
