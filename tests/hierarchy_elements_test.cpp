@@ -1,10 +1,14 @@
 // The element tree: containment, order, areas, and points found where they were sampled.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
 #include <vector>
 
+#include "halflight/hierarchy/elements.h"
 #include "halflight/hierarchy/size_grid.h"
 #include "halflight/rays/sampling.h"
+#include "halflight/scene/procedural/loose_triangles.h"
 #include "halflight/scene/procedural/office.h"
 #include "quad_scene.h"
 
@@ -61,6 +65,20 @@ TEST_P(ElementTrees, ParentsComeFirstAndHoldTheirChildren) {
       ++parents[child.value];
     }
   for (std::size_t i = 1; i < tree.size(); ++i) EXPECT_EQ(parents[i], 1);
+}
+
+// Also in crowds, where clusters take later clusters in.
+TEST_P(ElementTrees, HoldEveryLiveSideOnce) {
+  LooseTrianglesParameters crowd;
+  crowd.count = 3000;
+  const Elements e(loose_triangles_scene(crowd), GetParam());
+  std::vector<int> times(2 * e.surfaces.surfaces.size(), 0);
+  for (std::size_t i = 0; i < e.tree->size(); ++i)
+    if (const SideId side = (*e.tree)[ElementId(i)].side; side.valid()) {
+      ++times[side.value];
+      EXPECT_EQ(e.tree->side_root(side).value, i);
+    }
+  EXPECT_EQ(std::count(times.begin(), times.end(), 1), static_cast<long>(times.size()));
 }
 
 TEST_P(ElementTrees, CountTheAreaOfBothSidesOfAllTriangles) {

@@ -34,15 +34,18 @@ std::size_t pick(const Array& cumulative, std::size_t first, std::size_t count, 
 
 // Which clusters hold a live side anywhere below.
 std::vector<bool> inhabited(const ClusterTree& tree, const IdVector<SideId, std::uint8_t>& live) {
+  std::vector<std::uint32_t> parents_first{tree.root};
+  for (std::size_t next = 0; next < parents_first.size(); ++next)
+    for (const std::uint32_t child : tree.clusters[parents_first[next]].clusters)
+      parents_first.push_back(child);
   std::vector<bool> result(tree.clusters.size(), false);
-  // Builders append parents after their children.
-  for (std::size_t i = 0; i < tree.clusters.size(); ++i) {
-    const auto& cluster = tree.clusters[i];
+  for (std::size_t i = parents_first.size(); i-- > 0;) {
+    const auto& cluster = tree.clusters[parents_first[i]];
     bool any = false;
     for (const SurfaceId s : cluster.surfaces)
       any = any || live[side_of(s, false)] || live[side_of(s, true)];
-    for (const std::uint32_t c : cluster.clusters) any = any || result[c];
-    result[i] = any;
+    for (const std::uint32_t child : cluster.clusters) any = any || result[child];
+    result[parents_first[i]] = any;
   }
   return result;
 }
