@@ -15,7 +15,8 @@ constexpr float kSamePlane = 1e-4f;
 struct HalfEdge {
   std::uint32_t low, high;  // welded vertices
   std::uint32_t triangle;
-  bool forward;  // runs low -> high
+  std::uint8_t edge;  // of the triangle: from corner `edge` to the next
+  bool forward;       // runs low -> high
   bool operator<(const HalfEdge& o) const {
     return std::tie(low, high, triangle) < std::tie(o.low, o.high, o.triangle);
   }
@@ -29,33 +30,33 @@ std::vector<HalfEdge> sorted_half_edges(const Geometry& g,
     const auto& v = g.triangles[TriangleId(t)];
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t a = welded[v[k]].value, b = welded[v[(k + 1) % 3]].value;
-      edges.push_back({std::min(a, b), std::max(a, b), t, a < b});
+      edges.push_back({std::min(a, b), std::max(a, b), t, static_cast<std::uint8_t>(k), a < b});
     }
   }
   std::sort(edges.begin(), edges.end());
   return edges;
 }
 
-// Neighbours across edges that exactly two triangles share in opposite directions; else invalid.
+// Neighbours across each edge that exactly two triangles share in opposite directions; else
+// invalid.
 std::vector<std::array<TriangleId, 3>> manifold_neighbours(
     const Geometry& g, const IdVector<VertexId, VertexId>& welded) {
   const std::vector<HalfEdge> edges = sorted_half_edges(g, welded);
   std::vector<std::array<TriangleId, 3>> neighbours(g.triangles.size());
-  std::vector<std::uint8_t> used(g.triangles.size(), 0);
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i;
     while (j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high) ++j;
     if (j - i == 2 && edges[i].forward != edges[i + 1].forward) {
-      const std::uint32_t a = edges[i].triangle, b = edges[i + 1].triangle;
-      neighbours[a][used[a]++] = TriangleId(b);
-      neighbours[b][used[b]++] = TriangleId(a);
+      const HalfEdge &a = edges[i], &b = edges[i + 1];
+      neighbours[a.triangle][a.edge] = TriangleId(b.triangle);
+      neighbours[b.triangle][b.edge] = TriangleId(a.triangle);
     }
     i = j;
   }
   return neighbours;
 }
 
-// Frame with axis_u along the longest edge of the first triangle, so that rectangles stay upright.
+// Frame with axis_u along the longest edge of the triangle.
 Surface plane_of(const Geometry& g, TriangleId t) {
   const auto corner = g.corners(t);
   Vec3 longest(0.f);
@@ -86,6 +87,39 @@ bool lies_in(const Geometry& g, TriangleId t, const Surface& plane, float tolera
   for (const Vec3& p : g.corners(t))
     if (std::abs(glm::dot(p - plane.origin, plane.normal)) > tolerance) return false;
   return true;
+}
+
+// The longest edge of the border is one of a rectangle's sides, whatever diagonals it was cut
+// along: the cells of walls stay upright.
+void align_with_border(const Geometry& g, const Surfaces& surfaces,
+                       const std::vector<std::array<TriangleId, 3>>& neighbours, Surface& s) {
+  Vec3 longest(0.f);
+  const SurfaceId id = surfaces.of_triangle[surfaces.triangles[s.first_triangle]];
+  for (std::size_t i = s.first_triangle; i < surfaces.triangles.size(); ++i) {
+    const TriangleId t = surfaces.triangles[i];
+    const auto corner = g.corners(t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const TriangleId other = neighbours[t.value][k];
+      const Vec3 e = corner[(k + 1) % 3] - corner[k];
+      const bool inner = other.valid() && surfaces.of_triangle[other] == id;
+      if (!inner && glm::dot(e, e) > glm::dot(longest, longest)) longest = e;
+    }
+  }
+  if (!(glm::dot(longest, longest) > 0.f)) return;
+  const Vec3 in_plane = longest - glm::dot(longest, s.normal) * s.normal;
+  s.axis_u = glm::normalize(in_plane);
+  s.axis_v = glm::normalize(glm::cross(s.normal, s.axis_u));
+}
+
+void measure(const Geometry& g, const Surfaces& surfaces, Surface& s) {
+  s.uv_lower = Vec2(kInfinity);
+  s.uv_upper = Vec2(-kInfinity);
+  for (std::size_t i = s.first_triangle; i < surfaces.triangles.size(); ++i)
+    for (const Vec3& p : g.corners(surfaces.triangles[i])) {
+      s.box.extend(p);
+      s.uv_lower = glm::min(s.uv_lower, s.to_plane(p));
+      s.uv_upper = glm::max(s.uv_upper, s.to_plane(p));
+    }
 }
 
 }  // namespace
@@ -128,8 +162,6 @@ Surfaces build_surfaces(const Geometry& g) {
     const SurfaceId id(result.surfaces.size());
     Surface s = plane_of(g, TriangleId(seed));
     s.first_triangle = static_cast<std::uint32_t>(result.triangles.size());
-    s.uv_lower = Vec2(kInfinity);
-    s.uv_upper = Vec2(-kInfinity);
     const float tolerance = kSamePlane * std::sqrt(area[seed]);
 
     result.triangles.push_back(TriangleId(seed));
@@ -138,11 +170,6 @@ Surfaces build_surfaces(const Geometry& g) {
       const TriangleId t = result.triangles[next];
       s.area += area[t.value];
       result.cumulative_area.push_back(s.area);
-      for (const Vec3& p : g.corners(t)) {
-        s.box.extend(p);
-        s.uv_lower = glm::min(s.uv_lower, s.to_plane(p));
-        s.uv_upper = glm::max(s.uv_upper, s.to_plane(p));
-      }
       for (const TriangleId other : neighbours[t.value]) {
         if (!other.valid() || result.of_triangle[other].valid()) continue;
         if (!lies_in(g, other, s, tolerance)) continue;
@@ -151,6 +178,8 @@ Surfaces build_surfaces(const Geometry& g) {
       }
     }
     s.triangle_count = static_cast<std::uint32_t>(result.triangles.size()) - s.first_triangle;
+    if (s.triangle_count > 1) align_with_border(g, result, neighbours, s);
+    measure(g, result, s);
     result.surfaces.push_back(s);
   }
   return result;
