@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "halflight/hierarchy/live_sides.h"
+#include "halflight/rays/world.h"
 #include "halflight/scene/procedural/assembly.h"
 #include "halflight/scene/procedural/shapes.h"
+#include "quad_scene.h"
 
 namespace halflight {
 namespace {
@@ -104,6 +106,25 @@ TEST(LiveSides, CrateAroundAPinpointLampIsLitInside) {
   append_box(parts[lamp], {kCrate.center() - 0.003f, kCrate.center() + 0.003f});
   add_node(room.scene, "lamp", add_mesh(room.scene, "lamp", std::move(parts)));
   EXPECT_EQ(room.live_sides(kCrate).inside, 6);
+}
+
+TEST(LiveSides, RoomLitByAPinpointLampLives) {
+  RoomWithCrate room;
+  const MaterialId lamp = add_emitter(room.scene, "lamp", Rgb(5000.f), Rgb(0.5f));
+  MeshParts parts;
+  append_box(parts[lamp], {Vec3(2.f), Vec3(2.01f)});
+  add_node(room.scene, "lamp", add_mesh(room.scene, "lamp", std::move(parts)));
+  EXPECT_EQ(room.live_sides(kCrate).room_fronts, 6);
+}
+
+TEST(LiveSides, WideFloorUnderASmallLampLives) {
+  testing::QuadScene scene;
+  scene.quad({-20, 0, -20}, {0, 0, 40}, {40, 0, 0}, scene.material(0.5f));
+  scene.quad({0, 1, 0}, {0.1f, 0, 0}, {0, 0, 0.1f}, scene.material(0.5f, 100.f));
+  const World world(scene.scene);
+  const Surfaces surfaces = build_surfaces(world.geometry);
+  const auto live = find_live_sides(world.scene, world.geometry, surfaces, world.rays);
+  EXPECT_TRUE(live[side_of(surfaces.of_triangle[TriangleId(0)], false)]);
 }
 
 TEST(LiveSides, CrateWithoutALidIsLitInside) {

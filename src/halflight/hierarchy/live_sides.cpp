@@ -1,6 +1,7 @@
 #include "halflight/hierarchy/live_sides.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <tuple>
 
@@ -12,7 +13,8 @@ namespace {
 
 constexpr std::uint32_t kRaysPerBody = 256;
 constexpr std::uint32_t kRaysPerLargeSide = 64;
-constexpr float kLargeSurface = 1e-3f;  // share of the largest surface's area
+constexpr std::uint32_t kRaysPerEmitter = 32;  // of each side of each emitting triangle
+constexpr float kLargeSurface = 1e-3f;         // share of the largest surface's area
 
 using ComponentId = Id<struct ComponentTag>;
 
@@ -109,17 +111,61 @@ bool sees_nothing(const Geometry& g, const Surfaces& surfaces, const RayScene& r
   return true;
 }
 
+// Rays of receivers may all miss a small lamp: its own rays find whom it lights. `visit` is called
+// once for every side met, and may be called for the same side by several threads.
+template <class Visit>
+void follow_emission(const Scene& scene, const Geometry& g, const Surfaces& surfaces,
+                     const RayScene& rays, const Visit& visit) {
+  parallel_for(g.triangles.size(), 64, [&](std::size_t i) {
+    const TriangleId t(i);
+    const Material& m = scene.materials[g.materials[t]];
+    if (!m.emits()) return;
+    const auto corner = g.corners(t);
+    for (const bool back : {false, true}) {
+      if (back && !m.double_sided) continue;
+      const Vec3 n = glm::normalize(g.scaled_normal(t)) * (back ? -1.f : 1.f);
+      for (std::uint32_t k = 0; k < kRaysPerEmitter; ++k) {
+        const std::uint64_t seed = hash(i, k, back);
+        const Vec2 b = uniform_triangle(random_shift(seed));
+        const Vec3 p = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
+        const auto hit =
+            rays.closest_hit(rays.lift(p, n), direction_about(n, k, hash(i)), kInfinity, seed);
+        if (hit) visit(side_of(surfaces.of_triangle[hit->triangle], !hit->front));
+      }
+    }
+  });
+}
+
+// Sides that light from an emitter was seen to reach, and so the sides of bodies.
+struct LitByEmission {
+  std::vector<std::atomic<std::uint8_t>> sides, bodies;  // bodies: front and back of each
+};
+
+LitByEmission find_lit_by_emission(const Scene& scene, const Geometry& g, const Surfaces& surfaces,
+                                   const RayScene& rays, const Components& components) {
+  LitByEmission lit{std::vector<std::atomic<std::uint8_t>>(2 * surfaces.surfaces.size()),
+                    std::vector<std::atomic<std::uint8_t>>(2 * components.members.size())};
+  follow_emission(scene, g, surfaces, rays, [&](SideId side) {
+    const TriangleId t = surfaces.triangles[surfaces[side].first_triangle];
+    lit.sides[side.value].store(1, std::memory_order_relaxed);
+    lit.bodies[2 * components.of_triangle[t].value + (is_back(side) ? 1 : 0)].store(
+        1, std::memory_order_relaxed);
+  });
+  return lit;
+}
+
 }  // namespace
 
 IdVector<SideId, std::uint8_t> find_live_sides(const Scene& scene, const Geometry& g,
                                                const Surfaces& surfaces, const RayScene& rays) {
   const Components components = find_components(scene, g);
+  const LitByEmission lit = find_lit_by_emission(scene, g, surfaces, rays, components);
   const std::size_t bodies = components.members.size();
   std::vector<std::uint8_t> dead(2 * bodies, 0);
   parallel_for(2 * bodies, 8, [&](std::size_t i) {
     const ComponentId id(i / 2);
     const bool back = i % 2 != 0;
-    if (!components.closed[id.value] || components.transparent[id.value]) return;
+    if (!components.closed[id.value] || components.transparent[id.value] || lit.bodies[i]) return;
     const bool lit_by_itself =
         std::any_of(components.members[id.value].begin(), components.members[id.value].end(),
                     [&](TriangleId t) { return scene.materials[g.materials[t]].emits(); }) &&
@@ -140,7 +186,7 @@ IdVector<SideId, std::uint8_t> find_live_sides(const Scene& scene, const Geometr
     const TriangleId t = surfaces.triangles[s.first_triangle];
     const ComponentId body = components.of_triangle[t];
     const Material& m = scene.materials[s.material];
-    if (m.emits() && (!is_back(side) || m.double_sided)) return;
+    if (lit.sides[i] || (m.emits() && (!is_back(side) || m.double_sided))) return;
     if (dead[2 * body.value + (is_back(side) ? 1 : 0)])
       live[side] = 0;
     else if (!lit_from_outside && s.area > kLargeSurface * largest)
