@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <string>
 
 #include "commands.h"
 
@@ -14,6 +15,9 @@ int fail(const Error& error) {
 int main(int argc, char** argv) {
   CLI::App cli{"Lights diffuse 3-D scenes without noise.", "halflight"};
   cli.require_subcommand(1);
+  cli.failure_message([](const CLI::App*, const CLI::Error& e) {
+    return std::string("halflight: ") + e.what() + " (--help lists what there is)\n";
+  });
   int status = halflight::app::kGoalMet;
   halflight::app::add_inspect(cli, status);
   halflight::app::add_reference(cli, status);

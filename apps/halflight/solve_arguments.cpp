@@ -33,7 +33,7 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
       ->check(CLI::IsMember({"auto", "json", "none"}))
       ->capture_default_str();
   command.add_option("--threads", arguments.threads, "0: all cores")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, 4096))
       ->capture_default_str();
 }
 
