@@ -18,8 +18,8 @@ struct Bits {
 Bits solve_office(LinkMaker links, int threads) {
   set_thread_count(threads);
   OfficeParameters p;
-  p.count = 30;
-  const SolverState state = testing::solve(office_scene(p), testing::options_of(links, 0.6f, 0.2f));
+  p.count = 12;
+  const SolverState state = testing::solve(office_scene(p), testing::options_of(links, 1.f, 0.5f));
   Bits bits{state.radiosity.raw(), state.irradiance.raw(), {}, state.links.size()};
   const SolutionReader reader(state, kPixelReading);
   for (const Reading& r : reader(testing::scatter_sensors(state, 50)))

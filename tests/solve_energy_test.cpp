@@ -82,6 +82,44 @@ INSTANTIATE_TEST_SUITE_P(
         ClosedRoom{"OfficeSampled", small_office, 0.4f, LinkMaker::sampled}),
     [](const auto& test) { return std::string(test.param.name); });
 
+// Panes of opacity 0.3 divide the room; what they stop they reflect to 0.8.
+Scene room_with_screens() {
+  QuadScene scene;
+  scene.box({0, 0, 0}, {3, 2.5f, 4}, scene.material(0.4f), true);
+  scene.quad({1, 2.45f, 0.3f}, {1, 0, 0}, {0, 0, 0.6f}, scene.material(0.5f, 10.f));
+  const MaterialId screen = scene.pane(0.3f);
+  scene.scene.materials[screen].reflectance = Rgb(0.8f);
+  for (const float z : {1.2f, 1.8f, 2.4f, 3.f})
+    scene.quad({0.01f, 0.01f, z}, {2.98f, 0, 0}, {0, 2.48f, 0}, screen);
+  return scene.scene;
+}
+
+class Screens : public ::testing::TestWithParam<LinkMaker> {};
+
+TEST_P(Screens, WhatTheyLetThroughIsNotAbsorbed) {
+  const EnergyBalance balance =
+      energy_balance(testing::solve(room_with_screens(), testing::options_of(GetParam(), 0.2f)));
+  EXPECT_NEAR(balance.absorbed.g / balance.emitted.g, 1.f, 0.01f);
+}
+
+// A cell of a screen reflects opacity x reflectance of what falls on it, once.
+TEST_P(Screens, WallBehindThemIsLitAsPathTraced) {
+  const SolverState state =
+      testing::solve(room_with_screens(), testing::options_of(GetParam(), 0.2f));
+  const PathTracer tracer(*state.world);
+  const SolutionReader reader(state, {});
+  for (const Vec3 wall : {Vec3(0.7f, 1.f, 4.f), Vec3(1.5f, 0.5f, 4.f), Vec3(2.2f, 2.f, 4.f)}) {
+    const Vec3 n(0, 0, -1);
+    const float expected = tracer.estimate_irradiance(wall, n, 1u << 15, 3).mean.g;
+    EXPECT_NEAR(reader.read({wall, n, {}}).irradiance().g / expected, 1.f, 0.03f);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Links, Screens, ::testing::Values(LinkMaker::refined, LinkMaker::sampled),
+                         [](const auto& test) {
+                           return test.param == LinkMaker::refined ? "Refined" : "Sampled";
+                         });
+
 // A black lid absorbs what left the open box: the path tracer says how much falls on it.
 TEST(Energy, OpenCornellBoxLosesWhatALidWouldReceive) {
   const auto world = make_world(cornell_box_scene());
