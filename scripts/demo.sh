@@ -9,10 +9,9 @@ halflight=build/release/bin/halflight
 mkdir -p out
 
 "$halflight" scene office -o out/office.glb
-# Status 4: the time was up before the error goal was met; the result is valid all the same.
-"$halflight" solve out/office.glb --time 60s --checkpoint out/demo.checkpoint -o out/demo.glb ||
-  [ $? -eq 4 ]
-"$halflight" render out/demo.checkpoint --camera desk -o out/demo.png
+"$halflight" solve out/office.glb -o out/demo.glb --report out/demo.json
+"$halflight" render out/office.glb --camera desk -o out/demo.png
 
-echo "Lit scene: $PWD/out/demo.glb (opens in any glTF viewer)"
-echo "Picture:   $PWD/out/demo.png"
+echo "Picture:         out/demo.png"
+echo "Lit scene:       out/demo.glb (opens in any glTF viewer)"
+echo "What was done:   out/demo.json"
