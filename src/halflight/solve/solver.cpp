@@ -99,6 +99,10 @@ SolverState make_state(std::shared_ptr<const World> world, const SolveOptions& o
 void advance(SolverState& state, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const int pass = static_cast<int>(state.history.size());
+  const auto report = [&](double share_of_pass) {
+    progress.report("solve", (pass + share_of_pass) / std::max(1, state.options.passes));
+  };
+  report(0.0);
   PassRecord record;
   const float mean = pass == 0 ? first_guess_of_irradiance(state) : mean_irradiance(state);
   record.irradiance_threshold =
@@ -127,6 +131,7 @@ void advance(SolverState& state, const Progress& progress) {
   if (state.options.links == LinkMaker::sampled && pass + 1 == state.options.passes)
     links = replace_by_sampled_links(state, record.irradiance_threshold);
   state.links = LinkTable(state.tree.size(), std::move(links));
+  report(0.8);
   record.refine_seconds = seconds_since(start);
 
   record.sweeps = sweep_to_convergence(state, kSweepTolerance, kMostSweeps);
@@ -136,6 +141,7 @@ void advance(SolverState& state, const Progress& progress) {
   record.pairs = counts.pairs;
   record.rays += counts.rays;
   state.history.push_back(record);
+  report(1.0);
 }
 
 EnergyBalance energy_balance(const SolverState& state) {
