@@ -27,5 +27,7 @@ void add_reference(CLI::App& cli, int& status);
 void add_render(CLI::App& cli, int& status);
 void add_solve(CLI::App& cli, int& status);
 void add_scene(CLI::App& cli, int& status);
+void add_compare(CLI::App& cli, int& status);
+void add_reproduce(CLI::App& cli, int& status);
 
 }  // namespace halflight::app

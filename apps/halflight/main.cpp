@@ -24,6 +24,8 @@ int main(int argc, char** argv) {
   halflight::app::add_render(cli, status);
   halflight::app::add_solve(cli, status);
   halflight::app::add_scene(cli, status);
+  halflight::app::add_compare(cli, status);
+  halflight::app::add_reproduce(cli, status);
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -38,6 +38,11 @@ class CheckRooms(unittest.TestCase):
     def test_a_path_around_the_rooms_is_reported(self):
         self.assertEqual(len(offences(src__halflight__base__a_cpp='#include "../rays/r.h"\n')), 1)
 
+    def test_only_the_command_line_may_include_experiments(self):
+        line = '#include "experiments/e.h"\n'
+        self.assertEqual(offences(apps__halflight__main_cpp=line), [])
+        self.assertEqual(len(offences(src__halflight__base__a_cpp=line)), 1)
+
     def test_an_unlisted_room_is_reported(self):
         self.assertEqual(len(offences(src__halflight__attic__a_cpp="#include <vector>\n")), 1)
 

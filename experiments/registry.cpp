@@ -1,0 +1,19 @@
+#include <array>
+
+#include "experiments/experiment.h"
+#include "experiments/figures.h"
+
+namespace halflight::experiments {
+
+std::span<const Experiment> all_experiments() {
+  static constexpr std::array kExperiments{
+      Experiment{"figure1", "plain norms cannot tell the sizes of lost shadows apart", run_figure1},
+      Experiment{"figure2", "erosion and expansion of a binary image", run_figure2},
+      Experiment{"figure3", "erosions followed by as many expansions", run_figure3},
+      Experiment{"figure4", "feature masks of the four groups of cubes", run_figure4},
+      Experiment{"table1", "the feature-based error metric of the four groups", run_table1},
+  };
+  return kExperiments;
+}
+
+}  // namespace halflight::experiments
