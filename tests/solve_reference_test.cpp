@@ -143,7 +143,7 @@ TEST(EmitterTreeLight, IsTheDirectLightOfThePathTracer) {
       make_state(make_world(scene.scene), testing::options_of(LinkMaker::sampled, 0.1f));
   const auto points = testing::scatter_sensors(state, 150);
   const auto reference = path_traced(*state.world, points, 1u << 14);
-  const EmitterTree emitters(*state.world);
+  const EmitterTree emitters(*state.world, find_emitters(*state.world));
   std::vector<float> direct, deviation;
   const float scale = testing::mean(reference);
   for (std::size_t i = 0; i < points.size(); ++i) {
