@@ -52,7 +52,7 @@ void list_recipes() {
 }  // namespace
 
 void add_scene(CLI::App& cli, int& status) {
-  CLI::App* scene = cli.add_subcommand("scene", "Write a built-in scene as GLB");
+  CLI::App* scene = cli.add_subcommand("scene", "write a built-in scene");
   scene->require_subcommand(0, 1);
   scene->add_subcommand("list", "names of the scenes, one a line")->callback(list_recipes);
   for (Recipe& recipe : scene_recipes()) add_recipe(*scene, std::move(recipe), status);

@@ -69,6 +69,13 @@ Result<void> write_lit(const std::filesystem::path& path, const SolverState& sta
   return written;
 }
 
+void warn_without_output(const Outputs& outputs) {
+  if (outputs.lit.empty() && outputs.points.empty() && outputs.report.empty())
+    std::fputs(
+        "halflight: warning: nothing will be written (add -o lit.glb, --points or --report)\n",
+        stderr);
+}
+
 Result<int> run(const SolveCommand& command) {
   Report report;
   const auto start = std::chrono::steady_clock::now();
@@ -83,6 +90,7 @@ Result<int> run(const SolveCommand& command) {
   Result<Scene> scene = load(command.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
+  warn_without_output(command.outputs);
   report.end_phase("load", start);
 
   auto phase = std::chrono::steady_clock::now();
@@ -129,11 +137,13 @@ void add_solve(CLI::App& cli, int& status) {
   add_scene_arguments(sub, command->scene);
   add_solve_arguments(sub, command->solve);
   sub.add_option("-o,--output", command->outputs.lit, "lit scene, GLB")->type_name("lit.glb");
-  sub.add_option("--points", command->outputs.points, "sensors: lines \"x y z nx ny nz\"")
-      ->type_name("FILE");
+  CLI::Option* points =
+      sub.add_option("--points", command->outputs.points, "sensors: lines \"x y z nx ny nz\"")
+          ->type_name("FILE");
   sub.add_option("--points-out", command->outputs.points_out,
                  "the sensors with \"Er Eg Eb\" added; standard output without it")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->needs(points);
   sub.add_option("--report", command->outputs.report, "what was done, JSON")->type_name("FILE");
   sub.callback([command, &status] {
     set_thread_count(command->solve.threads);

@@ -27,13 +27,16 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
   command
       .add_option("--links", arguments.links,
                   "refined: by the error oracle alone; sampled: by rays on the elements it shaped")
-      ->transform(CLI::CheckedTransformer(makers))
+      ->transform(CLI::CheckedTransformer(makers).description(""))
+      ->type_name("refined|sampled")
       ->default_str("sampled");
-  command.add_option("--progress", arguments.progress, "auto, json or none")
-      ->check(CLI::IsMember({"auto", "json", "none"}))
+  command.add_option("--progress", arguments.progress, "how to tell of it on standard error")
+      ->check(CLI::IsMember({"auto", "json", "none"}).description(""))
+      ->type_name("auto|json|none")
       ->capture_default_str();
   command.add_option("--threads", arguments.threads, "0: all cores")
-      ->check(CLI::Range(0, 4096))
+      ->check(CLI::Range(0, 4096).description(""))
+      ->type_name("N")
       ->capture_default_str();
 }
 

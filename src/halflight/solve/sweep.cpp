@@ -20,13 +20,11 @@ struct ClusterNumbers {
   std::uint32_t operator[](ElementId e) const { return of_element[e.value]; }
 };
 
-// I_r = sum of weight * B_s over the links of each element alone.
+// I_r = sum of weight * sent(s) over the links of each element alone.
+template <class Sent>
 void gather(SolverState& state, const ClusterNumbers& number,
-            std::vector<DirectionalIrradiance>& arriving) {
+            std::vector<DirectionalIrradiance>& arriving, const Sent& sent) {
   const ElementTree& tree = state.tree;
-  const auto sent = [&](ElementId s) {
-    return state.emission_is_given ? state.radiosity[s] - state.exitance[s] : state.radiosity[s];
-  };
   parallel_for(tree.size(), kGrain, [&](std::size_t i) {
     const ElementId r(i);
     if (tree[r].is_cluster()) {
@@ -42,7 +40,7 @@ void gather(SolverState& state, const ClusterNumbers& number,
       }
       return;
     }
-    Rgb sum = tree[r].is_leaf() ? state.given_light[r] : Rgb(0.f);
+    Rgb sum(0.f);
     for (const Link& l : state.links.of(r))
       if (l.sampled()) sum += l.weight * sent(l.source);
     state.irradiance[r] = sum;
@@ -65,6 +63,29 @@ void push(SolverState& state, const ClusterNumbers& number,
   });
   for (std::size_t i = top; i < tree.size(); ++i)
     state.irradiance[ElementId(i)] += state.irradiance[tree[ElementId(i)].parent];
+}
+
+// By what the light that links bring to a leaf is multiplied, so that surroundings of radiosity 1
+// bring at most irradiance 1. Weights are estimated one by one, and those of a nook may add up to
+// more: pale surfaces there would feed each other without end.
+std::vector<float> limits(SolverState& state, const ClusterNumbers& number,
+                          std::vector<DirectionalIrradiance>& arriving) {
+  gather(state, number, arriving, [](ElementId) { return Rgb(1.f); });
+  push(state, number, arriving);
+  std::vector<float> limit(state.tree.size());
+  parallel_for(limit.size(), kGrain, [&](std::size_t i) {
+    limit[i] = 1.f / std::max(1.f, state.irradiance[ElementId(i)].r);
+  });
+  return limit;
+}
+
+// Adds what arrives by no link to the limited light of the links.
+void finish_leaves(SolverState& state, const std::vector<float>& limit) {
+  parallel_for(limit.size(), kGrain, [&](std::size_t i) {
+    const ElementId e(i);
+    if (!state.tree[e].is_cluster() && state.tree[e].is_leaf())
+      state.irradiance[e] = limit[i] * state.irradiance[e] + state.given_light[e];
+  });
 }
 
 }  // namespace
@@ -101,10 +122,15 @@ int sweep_to_convergence(SolverState& state, float tolerance, int most_sweeps) {
                  : static_cast<double>(e.area * average(state.radiosity[ElementId(i)]));
     });
   };
+  const auto sent = [&](ElementId s) {
+    return state.emission_is_given ? state.radiosity[s] - state.exitance[s] : state.radiosity[s];
+  };
+  const std::vector<float> limit = limits(state, number, arriving);
   double before = total();
   for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
-    gather(state, number, arriving);
+    gather(state, number, arriving, sent);
     push(state, number, arriving);
+    finish_leaves(state, limit);
     pull(state);
     const double after = total();
     if (std::abs(after - before) <= static_cast<double>(tolerance) * std::max(after, 1e-30 * area))

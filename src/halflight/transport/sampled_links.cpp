@@ -15,6 +15,9 @@ ElementId hit_leaf(const ElementTree& tree, const RayHit& hit) {
   return tree.find_leaf(side, a + hit.barycentric.x * (b - a) + hit.barycentric.y * (c - a));
 }
 
+// The radiosity of a cell counts its opacity, and so did chance when the ray stopped there.
+float weight_of(const RayHit& hit) { return 1.f / std::max(hit.opacity, 1e-3f); }
+
 // Cosine-distributed rays from points spread over the cell: each hit carries 1 / n of the
 // hemisphere.
 void sample_cell(const ElementTree& tree, const RayScene& rays, ElementId cell, int n,
@@ -31,7 +34,7 @@ void sample_cell(const ElementTree& tree, const RayScene& rays, ElementId cell, 
     if (!hit) continue;
     Link link;
     link.source = hit_leaf(tree, *hit);
-    link.weight = 1.f / static_cast<float>(n);
+    link.weight = weight_of(*hit) / static_cast<float>(n);
     if (link.source.valid()) links.push_back({cell, link});
   }
 }
@@ -75,7 +78,7 @@ void sample_cluster(const ElementTree& tree, const RayScene& rays, ElementId clu
     if (!hit) continue;
     Link link;
     link.source = hit_leaf(tree, *hit);
-    link.weight = 4.f / static_cast<float>(n);
+    link.weight = 4.f * weight_of(*hit) / static_cast<float>(n);
     link.direction = PackedDirection(w);
     if (link.source.valid()) links.push_back({cluster, link});
   }
