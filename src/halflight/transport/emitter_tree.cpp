@@ -8,6 +8,9 @@
 namespace halflight {
 namespace {
 
+// Points of a triangle looked at, however few rays go there.
+constexpr int kLeastPoints = 16;
+
 constexpr std::uint32_t kTextureSamples = 16;
 
 // Cosine of the angle between two directions less a third one's opening, never below -1.
@@ -16,6 +19,14 @@ float cosine_of_difference(float cos_a, float cos_b) {
   const float sin_a = std::sqrt(std::max(0.f, 1.f - cos_a * cos_a));
   const float sin_b = std::sqrt(std::max(0.f, 1.f - cos_b * cos_b));
   return cos_a * cos_b + sin_a * sin_b;
+}
+
+// cos cos / r^2 between two oriented points, unit normals; without 1 / pi.
+float point_kernel(const Vec3& x, const Vec3& n, const Vec3& y, const Vec3& m) {
+  const Vec3 between = y - x;
+  const float squared = std::max(glm::dot(between, between), 1e-20f);
+  return std::max(0.f, glm::dot(n, between)) * std::max(0.f, -glm::dot(m, between)) /
+         (squared * squared);
 }
 
 }  // namespace
@@ -166,18 +177,34 @@ Rgb EmitterTree::from_triangle(const EmittingSide& e, const Vec3& x, const Vec3&
   if (glm::dot(normal, x - corner[0]) <= 0.f) return Rgb(0.f);
   const float form_factor = polygon_form_factor(x, n, corner);
   const Vec3 from = world_->rays.lift(x, n);
-  // The closed form carries the kernel; rays carry its visible share, weighted by the kernel.
+  // The closed form carries the kernel; rays carry its visible share, weighted by the kernel. Few
+  // rays each choose among several points in proportion to the kernel: what is near, and so more
+  // often seen, counts as it should, and no light is lost by a point below the horizon.
+  const int candidates = std::max(1, kLeastPoints / std::max(1, rays));
   float kernel_sum = 0.f, seen_sum = 0.f;
   Rgb seen_radiance(0.f);
   int taken = 0;
   const auto shoot = [&](int until) {
     for (; taken < until; ++taken) {
-      const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(taken), shift));
-      const Vec3 y = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
-      const Vec3 between = y - x;
-      const float squared = std::max(glm::dot(between, between), 1e-20f);
-      const float kernel = std::max(0.f, glm::dot(n, between)) *
-                           std::max(0.f, -glm::dot(normal, between)) / (squared * squared);
+      float kernel = 0.f;
+      Vec2 b(0.f);
+      Vec3 y(0.f);
+      float choice = r2_sequence(static_cast<std::uint32_t>(taken), shift).x;
+      for (int k = 0; k < candidates; ++k) {
+        const auto index = static_cast<std::uint32_t>(taken * candidates + k);
+        const Vec2 c = uniform_triangle(r2_sequence(index, shift));
+        const Vec3 at = corner[0] + c.x * (corner[1] - corner[0]) + c.y * (corner[2] - corner[0]);
+        const float own = point_kernel(x, n, at, normal);
+        if (!(own > 0.f)) continue;
+        kernel += own;
+        // Keeps the newcomer with probability share, and stretches the choice to be used again.
+        const float share = own / kernel;
+        const bool chosen = choice < share;
+        choice = chosen ? choice / share : (choice - share) / (1.f - share);
+        if (!chosen) continue;
+        b = c;
+        y = at;
+      }
       if (!(kernel > 0.f)) continue;
       kernel_sum += kernel;
       const float seen = kernel * world_->rays.transmittance(from, world_->rays.lift(y, normal));
