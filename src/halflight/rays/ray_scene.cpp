@@ -162,8 +162,6 @@ std::optional<RayHit> RayScene::closest_hit(const Vec3& origin, const Vec3& dire
   hit.triangle = impl_->triangles[query.hit.geomID][query.hit.primID];
   hit.barycentric = {query.hit.u, query.hit.v};
   hit.distance = query.ray.tfar;
-  if (query.hit.geomID == 1)
-    hit.opacity = opacity_at(*impl_->source, *impl_->geometry, hit.triangle, hit.barycentric);
   const Vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
   hit.front = glm::dot(normal, direction) < 0.f;
   return hit;

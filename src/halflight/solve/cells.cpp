@@ -63,21 +63,25 @@ void evaluate_material(SolverState& state, ElementId cell) {
   const bool textured = m.reflectance_texture.valid() || m.alpha_texture.valid() ||
                         (m.emits() && m.emission_texture.valid());
   const std::uint32_t samples = textured ? kTextureSamples : 1;
+  float opacities = 0.f;
   Rgb reflectance(0.f), emission(0.f);
   for (std::uint32_t k = 0; k < samples; ++k) {
     const CellPoint p = tree.sample(cell, r2_sequence(k));
     const Vec2 b = barycentric_of(g, p);
     const float opacity = opacity_at(scene, g, p.triangle, b);
     reflectance += opacity * reflectance_at(scene, g, p.triangle, b);
-    emission += emission_at(scene, g, p.triangle, b);
+    emission += opacity * emission_at(scene, g, p.triangle, b);
+    opacities += opacity;
   }
   const float weight = 1.f / static_cast<float>(samples);
+  state.opacity[cell] = weight * opacities;
   state.reflectance[cell] = weight * reflectance;
   state.exitance[cell] = is_back(side) && !m.double_sided ? Rgb(0.f) : kPi * weight * emission;
 }
 
 void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   const std::size_t n = state.tree.size();
+  state.opacity.resize(n);
   state.reflectance.resize(n);
   state.exitance.resize(n);
   state.given_light.resize(n);

@@ -61,7 +61,7 @@ std::vector<ReceiverLink> replace_by_sampled_links(SolverState& state, float thr
   update_given_light(state, threshold, &emitters);
   SampledLinkOptions options;
   options.largest_cluster = kClusterSizes * state.options.feature_size;
-  return sample_links(state.tree, state.world->rays,
+  return sample_links(state.tree, state.world->rays, state.opacity,
                       choose_receivers(state.tree, options.largest_cluster), options);
 }
 
@@ -76,12 +76,13 @@ SolverState make_state(std::shared_ptr<const World> world, const SolveOptions& o
       world,   surfaces, ElementTree(world->geometry, *surfaces, build_size_grid(boxes), live),
       options, {},       {},
       {},      {},       {},
-      false,   {},       {},
-      {},      {}};
+      {},      false,    {},
+      {},      {},       {}};
   if (!(state.options.feature_size > 0.f))
     state.options.feature_size = world->geometry.bounds.diagonal() / 200.f;
 
   const std::size_t n = state.tree.size();
+  state.opacity.resize(n, 1.f);
   state.reflectance.resize(n);
   state.exitance.resize(n);
   state.given_light.resize(n, Rgb(0.f));
@@ -125,8 +126,9 @@ void advance(SolverState& state, const Progress& progress) {
   refine_options.most_links = state.options.most_links;
   RefineCounts counts;
   refine(
-      state.tree, state.world->rays, state.radiosity, std::move(pairs), refine_options,
-      [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress, links, counts);
+      state.tree, state.world->rays, state.radiosity, state.opacity, std::move(pairs),
+      refine_options, [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress,
+      links, counts);
   update_given_light(state, record.irradiance_threshold, nullptr);
   if (state.options.links == LinkMaker::sampled && pass + 1 == state.options.passes)
     links = replace_by_sampled_links(state, record.irradiance_threshold);
@@ -151,8 +153,9 @@ EnergyBalance energy_balance(const SolverState& state) {
     if (state.tree[e].is_cluster() || !state.tree[e].is_leaf()) continue;
     const float area = state.tree[e].area;
     balance.emitted += area * state.exitance[e];
-    if (!state.outer_light.empty()) balance.emitted += area * state.outer_light[e];
-    balance.absorbed += area * (Rgb(1.f) - state.reflectance[e]) * state.irradiance[e];
+    if (!state.outer_light.empty())
+      balance.emitted += area * state.opacity[e] * state.outer_light[e];
+    balance.absorbed += area * (Rgb(state.opacity[e]) - state.reflectance[e]) * state.irradiance[e];
   }
   balance.escaped = balance.emitted - balance.absorbed;
   return balance;

@@ -44,8 +44,9 @@ struct SolverState {
   ElementTree tree;
   SolveOptions options;  // resolved: no zeros that stand for defaults
 
-  IdVector<ElementId, Rgb> reflectance;  // of cells
-  IdVector<ElementId, Rgb> exitance;     // pi L of cells
+  IdVector<ElementId, float> opacity;    // of cells: share of the light that they stop
+  IdVector<ElementId, Rgb> reflectance;  // of cells, of all light that falls on them
+  IdVector<ElementId, Rgb> exitance;     // pi L of cells, times their opacity
   // Irradiance of leaf cells that links do not carry: by punctual lights and the sky, and with
   // sampled links by emitting surfaces too.
   IdVector<ElementId, Rgb> given_light;

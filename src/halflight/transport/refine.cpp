@@ -155,8 +155,8 @@ void append_finer_pairs(const ElementTree& tree, const ElementPair& pair, Verdic
 }  // namespace
 
 void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, Rgb>& radiosity,
-            std::vector<ElementPair> pairs, const RefineOptions& options,
-            const SplitListener& on_split, const Progress& progress,
+            const IdVector<ElementId, float>& opacity, std::vector<ElementPair> pairs,
+            const RefineOptions& options, const SplitListener& on_split, const Progress& progress,
             std::vector<ReceiverLink>& links, RefineCounts& counts) {
   std::vector<ElementPair> batch;
   std::vector<Verdict> verdicts;
@@ -166,7 +166,7 @@ void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, R
     pairs.resize(pairs.size() - n);
     const bool accept_all = links.size() > options.most_links || progress.cancelled();
 
-    const TransferScene scene{tree, rays, radiosity};
+    const TransferScene scene{tree, rays, radiosity, opacity};
     const Oracle oracle(scene, options, accept_all);
     verdicts.assign(n, {});
     parallel_for(n, 64, [&](std::size_t i) {

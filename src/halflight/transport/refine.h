@@ -41,8 +41,8 @@ using SplitListener = std::function<void(const std::vector<ElementId>& split_cel
 // Processes pairs until none is left and appends the links in a fixed order. Pairs whose source is
 // dark are kept as unsampled links. Deterministic for any thread count.
 void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, Rgb>& radiosity,
-            std::vector<ElementPair> pairs, const RefineOptions& options,
-            const SplitListener& on_split, const Progress& progress,
+            const IdVector<ElementId, float>& opacity, std::vector<ElementPair> pairs,
+            const RefineOptions& options, const SplitListener& on_split, const Progress& progress,
             std::vector<ReceiverLink>& links, RefineCounts& counts);
 
 // Error of a link in irradiance at its receiver, in the units of irradiance_threshold.

@@ -15,12 +15,10 @@ ElementId hit_leaf(const ElementTree& tree, const RayHit& hit) {
   return tree.find_leaf(side, a + hit.barycentric.x * (b - a) + hit.barycentric.y * (c - a));
 }
 
-// The radiosity of a cell counts its opacity, and so did chance when the ray stopped there.
-float weight_of(const RayHit& hit) { return 1.f / std::max(hit.opacity, 1e-3f); }
-
 // Cosine-distributed rays from points spread over the cell: each hit carries 1 / n of the
 // hemisphere.
-void sample_cell(const ElementTree& tree, const RayScene& rays, ElementId cell, int n,
+void sample_cell(const ElementTree& tree, const RayScene& rays,
+                 const IdVector<ElementId, float>& opacity, ElementId cell, int n,
                  std::vector<ReceiverLink>& links) {
   const Vec3 normal = tree.normal(cell);
   const Frame frame = Frame::from_normal(normal);
@@ -34,8 +32,9 @@ void sample_cell(const ElementTree& tree, const RayScene& rays, ElementId cell, 
     if (!hit) continue;
     Link link;
     link.source = hit_leaf(tree, *hit);
-    link.weight = weight_of(*hit) / static_cast<float>(n);
-    if (link.source.valid()) links.push_back({cell, link});
+    if (!link.source.valid()) continue;
+    link.weight = 1.f / (static_cast<float>(n) * opacity[link.source]);
+    links.push_back({cell, link});
   }
 }
 
@@ -63,7 +62,8 @@ ElementId facing_cell(const ElementTree& tree, ElementId cluster, const Vec3& w,
 }
 
 // Uniform directions, each seen from a cell that faces it: radiance B / pi over 4 pi / n.
-void sample_cluster(const ElementTree& tree, const RayScene& rays, ElementId cluster, int n,
+void sample_cluster(const ElementTree& tree, const RayScene& rays,
+                    const IdVector<ElementId, float>& opacity, ElementId cluster, int n,
                     std::vector<ReceiverLink>& links) {
   const Vec2 shift = random_shift(hash(cluster.value, 31));
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
@@ -78,9 +78,10 @@ void sample_cluster(const ElementTree& tree, const RayScene& rays, ElementId clu
     if (!hit) continue;
     Link link;
     link.source = hit_leaf(tree, *hit);
-    link.weight = 4.f * weight_of(*hit) / static_cast<float>(n);
+    if (!link.source.valid()) continue;
+    link.weight = 4.f / (static_cast<float>(n) * opacity[link.source]);
     link.direction = PackedDirection(w);
-    if (link.source.valid()) links.push_back({cluster, link});
+    links.push_back({cluster, link});
   }
 }
 
@@ -101,15 +102,16 @@ std::vector<ElementId> choose_receivers(const ElementTree& tree, float largest_c
 }
 
 std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& rays,
+                                       const IdVector<ElementId, float>& opacity,
                                        const std::vector<ElementId>& receivers,
                                        const SampledLinkOptions& options) {
   return parallel_collect<ReceiverLink>(
       receivers.size(), 64, [&](std::size_t i, std::vector<ReceiverLink>& links) {
         const ElementId e = receivers[i];
         if (tree[e].is_cluster())
-          sample_cluster(tree, rays, e, options.rays_per_cluster, links);
+          sample_cluster(tree, rays, opacity, e, options.rays_per_cluster, links);
         else
-          sample_cell(tree, rays, e, options.rays_per_cell, links);
+          sample_cell(tree, rays, opacity, e, options.rays_per_cell, links);
       });
 }
 

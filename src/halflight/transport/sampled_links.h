@@ -23,8 +23,11 @@ struct SampledLinkOptions {
 // The cut of the tree that receives: small clusters, and leaf cells outside them.
 std::vector<ElementId> choose_receivers(const ElementTree& tree, float largest_cluster);
 
-// In receiver order, each receiver's links in ray order: deterministic.
+// A ray stops in a cell in proportion to the cell's opacity, by which radiosity is already reduced:
+// the weight is divided by it. In receiver order, each receiver's links in ray order:
+// deterministic.
 std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& rays,
+                                       const IdVector<ElementId, float>& opacity,
                                        const std::vector<ElementId>& receivers,
                                        const SampledLinkOptions& options);
 

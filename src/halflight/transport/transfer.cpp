@@ -214,7 +214,8 @@ TransferEstimate estimate_touching_transfer(const TransferScene& scene, ElementI
     ElementId at =
         tree.find_leaf(side, a + hit->barycentric.x * (b - a) + hit->barycentric.y * (c - a));
     if (!at.valid()) continue;
-    const float radiosity = average(scene.radiosity[at]);
+    // The ray stopped in proportion to the opacity, by which radiosity is already reduced.
+    const float radiosity = average(scene.radiosity[at]) / scene.opacity[at];
     while (at.value > source.value) at = tree[at].parent;  // parents have smaller ids
     if (at == source) sum += radiosity / mean_radiosity;
   }

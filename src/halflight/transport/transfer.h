@@ -15,6 +15,7 @@ struct TransferScene {
   const ElementTree& tree;
   const RayScene& rays;
   const IdVector<ElementId, Rgb>& radiosity;  // mean over the element's area
+  const IdVector<ElementId, float>& opacity;  // of cells
 };
 
 // Cheap geometry of a pair, before any ray. Per unit radiosity of the source.
