@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "halflight/base/parallel.h"
-#include "halflight/scene/procedural/office.h"
+#include "halflight/scene/procedural/loose_triangles.h"
 #include "solved_scene.h"
 
 namespace halflight {
@@ -15,11 +15,12 @@ struct Bits {
   std::size_t links = 0;
 };
 
-Bits solve_office(LinkMaker links, int threads) {
+Bits solve_crowd(LinkMaker links, int threads) {
   set_thread_count(threads);
-  OfficeParameters p;
-  p.count = 12;
-  const SolverState state = testing::solve(office_scene(p), testing::options_of(links, 1.f, 0.5f));
+  LooseTrianglesParameters p;
+  p.count = 400;
+  const SolverState state =
+      testing::solve(loose_triangles_scene(p), testing::options_of(links, 0.3f, 0.2f));
   Bits bits{state.radiosity.raw(), state.irradiance.raw(), {}, state.links.size()};
   const SolutionReader reader(state, kPixelReading);
   for (const Reading& r : reader(testing::scatter_sensors(state, 50)))
@@ -35,10 +36,10 @@ bool same(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
 class Determinism : public ::testing::TestWithParam<LinkMaker> {};
 
 TEST_P(Determinism, RadiosityIsTheSameBitForBit) {
-  const Bits once = solve_office(GetParam(), 1);
+  const Bits once = solve_crowd(GetParam(), 1);
   EXPECT_GT(once.links, 1000u);
   for (const int threads : {1, 2, 3}) {
-    const Bits again = solve_office(GetParam(), threads);
+    const Bits again = solve_crowd(GetParam(), threads);
     EXPECT_EQ(again.links, once.links) << threads << " threads";
     EXPECT_TRUE(same(again.radiosity, once.radiosity)) << threads << " threads";
     EXPECT_TRUE(same(again.irradiance, once.irradiance)) << threads << " threads";

@@ -16,31 +16,40 @@ constexpr float kExpected = kPi / (1.f - kReflectance);  // E = B
 
 class Furnace : public ::testing::TestWithParam<std::tuple<LinkMaker, int>> {
  protected:
+  LinkMaker links() const { return std::get<0>(GetParam()); }
+  // Rays keep rows exact. Refined links keep their estimated error only, and in a furnace the
+  // errors of all links point the same way.
+  float tolerance() const { return links() == LinkMaker::sampled ? 0.005f : 0.03f; }
+  // Among cubes, direct light is read by 16 to 64 rays to each partly hidden triangle.
+  float tolerance_at_sensors() const {
+    if (links() == LinkMaker::refined) return 0.15f;
+    return std::get<1>(GetParam()) == 0 ? 0.03f : 0.12f;
+  }
+
   SolverState solved() const {
     FurnaceParameters furnace;
     furnace.reflectance = kReflectance;
     furnace.boxes = std::get<1>(GetParam());
-    return testing::solve(furnace_scene(furnace),
-                          testing::options_of(std::get<0>(GetParam()), 0.2f));
+    return testing::solve(furnace_scene(furnace), testing::options_of(links(), 0.2f, 0.02f));
   }
 };
 
 TEST_P(Furnace, EverySensorReadsTheSameLight) {
   const SolverState state = solved();
   const auto irradiance = testing::read_irradiance(state, testing::scatter_sensors(state, 200));
-  EXPECT_NEAR(testing::mean(irradiance) / kExpected, 1.f, 0.005f);
-  for (const float e : irradiance) EXPECT_NEAR(e / kExpected, 1.f, 0.03f);
+  EXPECT_NEAR(testing::mean(irradiance) / kExpected, 1.f, tolerance());
+  for (const float e : irradiance) EXPECT_NEAR(e / kExpected, 1.f, tolerance_at_sensors());
 }
 
 TEST_P(Furnace, EverySurfaceHasTheSameRadiosityOnTheMean) {
   const SolverState state = solved();
-  EXPECT_NEAR(mean_irradiance(state) / kExpected, 1.f, 0.005f);
-  EXPECT_NEAR(average(state.radiosity[state.tree.root()]) / kExpected, 1.f, 0.005f);
+  EXPECT_NEAR(mean_irradiance(state) / kExpected, 1.f, tolerance());
+  EXPECT_NEAR(average(state.radiosity[state.tree.root()]) / kExpected, 1.f, tolerance());
 }
 
 TEST_P(Furnace, AbsorbsWhatItEmits) {
   const EnergyBalance balance = energy_balance(solved());
-  EXPECT_NEAR(average(balance.absorbed) / average(balance.emitted), 1.f, 0.005f);
+  EXPECT_NEAR(average(balance.absorbed) / average(balance.emitted), 1.f, tolerance());
 }
 
 INSTANTIATE_TEST_SUITE_P(Boxes, Furnace,
