@@ -66,11 +66,12 @@ void push(SolverState& state, const ClusterNumbers& number,
 }
 
 // By what the light that links bring to a leaf is multiplied, so that surroundings of radiosity 1
-// bring at most irradiance 1. Weights are estimated one by one, and those of a nook may add up to
-// more: pale surfaces there would feed each other without end.
+// (translucent ones: of their opacity) bring at most irradiance 1. Weights are estimated one by
+// one, and those of a nook may add up to more: pale surfaces there would feed each other without
+// end.
 std::vector<float> limits(SolverState& state, const ClusterNumbers& number,
                           std::vector<DirectionalIrradiance>& arriving) {
-  gather(state, number, arriving, [](ElementId) { return Rgb(1.f); });
+  gather(state, number, arriving, [&](ElementId s) { return Rgb(state.opacity[s]); });
   push(state, number, arriving);
   std::vector<float> limit(state.tree.size());
   parallel_for(limit.size(), kGrain, [&](std::size_t i) {
