@@ -90,6 +90,27 @@ void finish_leaves(SolverState& state, const std::vector<float>& limit) {
   });
 }
 
+// Power that the next pull adds or removes, and all that is reflected. Not the change of the sum:
+// on the way from one set of links to another, what one place gains another may lose.
+struct Change {
+  double absolute = 0.0, reflected = 0.0;
+  Change& operator+=(const Change& c) {
+    absolute += c.absolute;
+    reflected += c.reflected;
+    return *this;
+  }
+};
+Change change_of_radiosity(const SolverState& state) {
+  return parallel_sum(state.tree.size(), kGrain, Change{}, [&](std::size_t i) {
+    const ElementId id(i);
+    const Element& e = state.tree[id];
+    if (e.is_cluster() || !e.is_leaf()) return Change{};
+    const Rgb reflected = state.reflectance[id] * state.irradiance[id];
+    const Rgb change = state.exitance[id] + reflected - state.radiosity[id];
+    return Change{e.area * average(glm::abs(change)), e.area * average(reflected)};
+  });
+}
+
 }  // namespace
 
 void pull(SolverState& state) {
@@ -115,29 +136,17 @@ void pull(SolverState& state) {
 int sweep_to_convergence(SolverState& state, float tolerance, int most_sweeps) {
   const ClusterNumbers number(state.tree);
   std::vector<DirectionalIrradiance> arriving(number.count);
-  const float area = state.tree[state.tree.root()].area;
-  const auto total = [&] {
-    return parallel_sum(state.tree.size(), kGrain, 0.0, [&](std::size_t i) {
-      const Element& e = state.tree[ElementId(i)];
-      return e.is_cluster() || !e.is_leaf()
-                 ? 0.0
-                 : static_cast<double>(e.area * average(state.radiosity[ElementId(i)]));
-    });
-  };
   const auto sent = [&](ElementId s) {
     return state.emission_is_given ? state.radiosity[s] - state.exitance[s] : state.radiosity[s];
   };
   const std::vector<float> limit = limits(state, number, arriving);
-  double before = total();
   for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
     gather(state, number, arriving, sent);
     push(state, number, arriving);
     finish_leaves(state, limit);
+    const Change change = change_of_radiosity(state);
     pull(state);
-    const double after = total();
-    if (std::abs(after - before) <= static_cast<double>(tolerance) * std::max(after, 1e-30 * area))
-      return sweep;
-    before = after;
+    if (change.absolute <= static_cast<double>(tolerance) * change.reflected) return sweep;
   }
   return most_sweeps;
 }
