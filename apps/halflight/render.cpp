@@ -32,8 +32,9 @@ Result<void> check(const RenderArguments& arguments) {
   return {};
 }
 
-Result<Image> solved_image(const RenderArguments& arguments, std::shared_ptr<const World> world,
-                           const View& view, const Progress& progress) {
+Result<Image> solved_image(const RenderArguments& arguments,
+                           const std::shared_ptr<const World>& world, const View& view,
+                           const Progress& progress) {
   const Result<SolveOptions> options = resolve(arguments.solve);
   if (!options) return tl::unexpected(options.error());
   SolverState state = make_state(world, *options);

@@ -67,7 +67,7 @@ std::vector<ReceiverLink> replace_by_sampled_links(SolverState& state, float thr
 
 }  // namespace
 
-SolverState make_state(std::shared_ptr<const World> world, const SolveOptions& options) {
+SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options) {
   auto surfaces = std::make_shared<const Surfaces>(build_surfaces(world->geometry));
   std::vector<Bounds3f> boxes(surfaces->surfaces.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = (*surfaces)[SurfaceId(i)].box;

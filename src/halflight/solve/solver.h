@@ -61,7 +61,7 @@ struct SolverState {
   bool done() const { return static_cast<int>(history.size()) >= options.passes; }
 };
 
-SolverState make_state(std::shared_ptr<const World> world, const SolveOptions& options);
+SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options);
 
 // Runs one pass: refine the links at the present radiosities, then sweep to convergence.
 void advance(SolverState& state, const Progress& progress);
