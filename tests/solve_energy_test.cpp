@@ -77,13 +77,13 @@ TEST_P(ClosedRooms, AbsorbAllThatIsEmitted) {
 
 INSTANTIATE_TEST_SUITE_P(
     Rooms, ClosedRooms,
-    ::testing::Values(ClosedRoom{"BlocksRefined", room_with_blocks, 0.2f, LinkMaker::refined},
-                      ClosedRoom{"BlocksSampled", room_with_blocks, 0.2f, LinkMaker::sampled},
-                      ClosedRoom{"DoorwayRefined", [] { return doorway_scene(); }, 0.3f,
-                                 LinkMaker::refined, 0.02f},
-                      ClosedRoom{"DoorwaySampled", [] { return doorway_scene(); }, 0.3f,
-                                 LinkMaker::sampled},
-                      ClosedRoom{"OfficeSampled", small_office, 0.4f, LinkMaker::sampled, 0.02f}),
+    ::testing::Values(
+        ClosedRoom{"BlocksRefined", room_with_blocks, 0.2f, LinkMaker::refined, 0.02f},
+        ClosedRoom{"BlocksSampled", room_with_blocks, 0.2f, LinkMaker::sampled},
+        ClosedRoom{"DoorwayRefined", [] { return doorway_scene(); }, 0.3f, LinkMaker::refined,
+                   0.02f},
+        ClosedRoom{"DoorwaySampled", [] { return doorway_scene(); }, 0.3f, LinkMaker::sampled},
+        ClosedRoom{"OfficeSampled", small_office, 0.4f, LinkMaker::sampled, 0.02f}),
     [](const auto& test) { return std::string(test.param.name); });
 
 // Panes of opacity 0.3 divide the room; what they stop they reflect to 0.8.

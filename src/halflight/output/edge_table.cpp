@@ -80,8 +80,10 @@ std::size_t EdgeTable::read_middles(std::span<const FineSheet> sheets, float fea
       const float length = glm::length(normal_sum);
       const Vec3 normal = length > 1e-3f ? normal_sum / length : mesh_.sites[mesh_.site(a)].normal;
       middle = mesh_.sites.push_back({{}, normal, {}, {}});
-      ReadingPoint place{
-          .position = p, .normal = normal, .triangle = sheet.source, .direct_only = s.smooth_indirect};
+      ReadingPoint place{.position = p,
+                         .normal = normal,
+                         .triangle = sheet.source,
+                         .direct_only = s.smooth_indirect};
       if (continues)
         site_edge.middle = {middle, middle};
       else {  // read a little inside the surface that ends here
@@ -114,7 +116,8 @@ bool EdgeTable::is_indirect_smooth(const FineSheet& s, float mean_irradiance) co
     const Rgb b = mesh_.sites[mesh_.site(corners[(k + 1) % 3])].light.indirect;
     const Reading& m = mesh_.sites[middle(s, k)].light;
     const float scale = std::max(max_component(m.irradiance()), kDarkest * mean_irradiance);
-    if (max_component(glm::abs(m.indirect - 0.5f * (a + b))) > kSmoothIndirect * scale) return false;
+    if (max_component(glm::abs(m.indirect - 0.5f * (a + b))) > kSmoothIndirect * scale)
+      return false;
   }
   return true;
 }

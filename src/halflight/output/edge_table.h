@@ -41,8 +41,8 @@ struct FineSheet {
   SheetId sheet;
   float longest_wanted = 0.f;
   bool smooth_indirect = false;  // a sheet it came from showed indirect light to be linear
-  bool primary = true;          // false: the back of a triangle whose front is shown as well
-  std::array<EdgeId, 3> edges;  // side k from corner k to k + 1; invalid when too short to split
+  bool primary = true;           // false: the back of a triangle whose front is shown as well
+  std::array<EdgeId, 3> edges;   // side k from corner k to k + 1; invalid when too short to split
   std::array<SiteEdgeId, 3> site_edges;
   std::array<std::uint32_t, 3> next_use{kNoUse, kNoUse, kNoUse};  // side k of sheet i is 3 i + k
   bool affected = false;                                          // has a side that is being split

@@ -15,7 +15,7 @@ struct ReadingPoint {
   Vec3 position{0.f};
   Vec3 normal{0.f, 1.f, 0.f};  // unit; may be a shading normal
   TriangleId triangle;         // the surface it lies on; invalid: none in particular
-  bool direct_only = false;           // the indirect part is known from elsewhere
+  bool direct_only = false;    // the indirect part is known from elsewhere
 };
 
 // Irradiance E = direct + indirect, W/m2 (or lux), at one point.

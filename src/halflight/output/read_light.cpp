@@ -13,7 +13,7 @@ constexpr float kBright = 5.f;
 
 // Whole surfaces (none that needed cells) that reflect much more light than others.
 std::vector<EmittingSide> find_bright_reflectors(const SolverState& state,
-                                            IdVector<SideId, std::uint8_t>& is_bright) {
+                                                 IdVector<SideId, std::uint8_t>& is_bright) {
   const ElementTree& tree = state.tree;
   const Geometry& g = state.world->geometry;
   double power = 0.0, area = 0.0;
@@ -86,8 +86,7 @@ Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
     const SideId side = side_of(state_->surfaces->of_triangle[hit->triangle], !hit->front);
     if (!is_bright_[side]) sum += reflected_radiosity(*hit);
   }
-  return sum / static_cast<float>(options_.gather_rays) +
-         bright_.irradiance(x, n, options_.direct);
+  return sum / static_cast<float>(options_.gather_rays) + bright_.irradiance(x, n, options_.direct);
 }
 
 Reading SolutionReader::read(const ReadingPoint& point) const {

@@ -20,8 +20,9 @@ struct ReadOptions {
 inline constexpr ReadOptions kMeshReading{
     .gather_rays = 256,
     .direct = {.shadow_rays = 8, .penumbra_rays = 32, .largest_group_share = 0.03f}};
-inline constexpr ReadOptions kPixelReading{.gather_rays = 32,
-                                           .direct = {.shadow_rays = 4, .penumbra_rays = 12, .largest_group_share = 0.03f}};
+inline constexpr ReadOptions kPixelReading{
+    .gather_rays = 32,
+    .direct = {.shadow_rays = 4, .penumbra_rays = 12, .largest_group_share = 0.03f}};
 
 class SolutionReader {
  public:

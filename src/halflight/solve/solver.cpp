@@ -20,8 +20,8 @@ constexpr float kThresholdPerError = 0.02f;
 constexpr float kThresholdRatio = 4.f;  // between passes
 constexpr float kBlindCells = 8.f;      // RefineOptions::largest_blind_cell in feature sizes
 constexpr float kClusterSizes = 1.f;    // SampledLinkOptions::largest_cluster in feature sizes
-constexpr float kSweepTolerance = 1e-5f;
-constexpr int kMostSweeps = 200;
+constexpr float kSweepTolerance = 2e-4f;
+constexpr int kMostSweeps = 60;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -7,7 +7,7 @@ namespace halflight {
 namespace {
 
 constexpr std::size_t kGrain = 1024;
-constexpr float kLargestRow = 1.3f;
+constexpr float kLargestRow = 1.3f;  // of refined links
 
 // Clusters numbered by themselves, so that only they carry directional irradiance.
 struct ClusterNumbers {
@@ -67,16 +67,18 @@ void push(SolverState& state, const ClusterNumbers& number,
 }
 
 // By what the light that links bring to a leaf is multiplied, so that surroundings of radiosity 1
-// (translucent ones: of their opacity) bring at most kLargestRow. Weights are estimated one by one,
-// and those of a nook may add up to much more than 1: pale surfaces there would feed each other
-// without end. Sums a little above 1 are noise, and cutting only those would lose energy.
+// (translucent ones: of their opacity) bring at most kLargestRow, 1 for sampled links. Weights are
+// estimated one by one, and those of a nook may add up to much more than 1: pale surfaces there
+// would feed each other without end. Sums a little above 1 are noise, and cutting only those would
+// lose energy.
 std::vector<float> limits(SolverState& state, const ClusterNumbers& number,
                           std::vector<DirectionalIrradiance>& arriving) {
   gather(state, number, arriving, [&](ElementId s) { return Rgb(state.opacity[s]); });
   push(state, number, arriving);
+  const float largest = state.emission_is_given ? 1.f : kLargestRow;
   std::vector<float> limit(state.tree.size());
   parallel_for(limit.size(), kGrain, [&](std::size_t i) {
-    limit[i] = std::min(1.f, kLargestRow / std::max(state.irradiance[ElementId(i)].r, 1e-6f));
+    limit[i] = std::min(1.f, largest / std::max(state.irradiance[ElementId(i)].r, 1e-6f));
   });
   return limit;
 }

@@ -1,6 +1,7 @@
 #include "halflight/transport/emitter_tree.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "halflight/rays/sampling.h"
 #include "halflight/transport/form_factor.h"
@@ -225,6 +226,9 @@ Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int 
   const Vec3 from = world_->rays.lift(x, n);
   const float before = node.first == 0 ? 0.f : cumulative_power_[node.first - 1];
   const auto begin = cumulative_power_.begin() + node.first;
+  // Which emitter and which point of it must not hang together.
+  const Vec2 point_shift = random_shift(
+      hash(std::bit_cast<std::uint32_t>(shift.x), std::bit_cast<std::uint32_t>(shift.y)));
   Rgb sum(0.f);
   for (int k = 0; k < rays; ++k) {
     const float stratum = (static_cast<float>(k) + shift.x) / static_cast<float>(rays);
@@ -232,7 +236,7 @@ Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int 
     const auto offset = std::min<std::ptrdiff_t>(found - begin, node.count - 1);
     const EmittingSide& e = emitters_[node.first + static_cast<std::uint32_t>(offset)];
     const auto corner = g.corners(e.triangle);
-    const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(k), shift));
+    const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(k), point_shift));
     const Vec3 y = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
     const Vec3 normal = normal_of(e), between = y - x;
     const float squared = glm::dot(between, between);
