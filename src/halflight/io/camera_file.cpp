@@ -39,7 +39,7 @@ Result<PlacedCamera> to_camera(const Json& object, const Mat4& to_world, const s
   if (position && target) forward = *target - *position;
   if (!position || !forward || !(glm::length(*forward) > 0.f))
     return input_error("the camera has no position or no direction", where,
-                       "give \"position\": [x, y, z] and \"forward\": [x, y, z]");
+                       R"(give "position": [x, y, z] and "forward": [x, y, z])");
   const auto fov = object.find("fov_y_deg");
   const double degrees = fov != object.end() && fov->is_number() ? fov->get<double>() : kDefaultFov;
   if (!(degrees > 0.0 && degrees < 180.0))
@@ -61,9 +61,8 @@ Result<View> read_camera_file(const std::filesystem::path& path, const Mat4& to_
   if (!bytes) return tl::unexpected(bytes.error());
   const Json file = Json::parse(*bytes, nullptr, /*allow_exceptions=*/false);
   if (!file.is_object())
-    return input_error(
-        "this is not a camera in JSON", path.string(),
-        "write {\"position\": [x, y, z], \"forward\": [x, y, z], \"fov_y_deg\": 45}");
+    return input_error("this is not a camera in JSON", path.string(),
+                       R"(write {"position": [x, y, z], "forward": [x, y, z], "fov_y_deg": 45})");
   const auto inner = file.find("camera");
   const Json& object = inner != file.end() && inner->is_object() ? *inner : file;
   Result<PlacedCamera> camera = to_camera(object, to_world, path.string());

@@ -11,7 +11,7 @@ constexpr std::uint32_t kTextureSamples = 8;
 constexpr std::uint32_t kPointsOfCell = 4;
 constexpr int kSkyRays = 16;  // of each point
 constexpr DirectLightOptions kCellDirectLight{
-    .shadow_rays = 2, .penumbra_rays = 4, .largest_group_share = 0.1f, .smallest_angle = 0.01f};
+    .shadow_rays = 8, .penumbra_rays = 8, .largest_group_share = 0.05f, .smallest_angle = 0.01f};
 
 Vec2 barycentric_of(const Geometry& g, const CellPoint& p) {
   const auto [a, b, c] = g.corners(p.triangle);
@@ -21,27 +21,31 @@ Vec2 barycentric_of(const Geometry& g, const CellPoint& p) {
           glm::dot(glm::cross(b - a, p.position - a), n) / area};
 }
 
+// Streams of samples: to decide with, and to keep.
+constexpr std::uint64_t kPilot = 1, kKept = 2;
+
 struct GivenLight {
   Rgb mean{0.f};
   Rgb outer{0.f};  // the part by punctual lights and the sky
   float deviation = 0.f;
 };
 
-GivenLight sample_given_light(const SolverState& state, ElementId cell,
+GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uint64_t stream,
                               const EmitterTree* emitters) {
   const Vec3 n = state.tree.normal(cell);
   const bool whole_and_small = state.tree.cell_size(cell) < state.options.feature_size;
   const std::uint32_t samples = whole_and_small ? 1 : kPointsOfCell;
   GivenLight result;
   float sum = 0.f, squares = 0.f;
-  const Vec2 shift = random_shift(hash(cell.value, 11));
+  const Vec2 shift = random_shift(hash(cell.value, stream, 11));
   for (std::uint32_t k = 0; k < samples; ++k) {
     const Vec3 x = state.tree.sample(cell, r2_sequence(k, shift)).position;
     Rgb e = punctual_irradiance(*state.world, x, n) +
-            sky_irradiance(*state.world, x, n, kSkyRays, random_shift(hash(cell.value, k)));
+            sky_irradiance(*state.world, x, n, kSkyRays, random_shift(hash(cell.value, k, stream)));
     result.outer += e / static_cast<float>(samples);
     if (emitters)
-      e += emitters->irradiance(x, n, kCellDirectLight, random_shift(hash(cell.value, k, 13)));
+      e += emitters->irradiance(x, n, kCellDirectLight,
+                                random_shift(hash(cell.value, k, stream, 13)));
     result.mean += e / static_cast<float>(samples);
     sum += average(e);
     squares += average(e) * average(e);
@@ -116,13 +120,17 @@ void update_given_light(SolverState& state, float irradiance_threshold,
     std::vector<std::uint8_t> uneven(open.size());
     parallel_for(open.size(), 16, [&](std::size_t i) {
       const ElementId e = open[i];
-      const GivenLight light = sample_given_light(state, e, emitters);
+      // As with links: what is kept had no say in whether to split (transport/refine.cpp).
+      if (state.tree.cell_size(e) > state.options.feature_size) {
+        const GivenLight pilot = sample_given_light(state, e, kPilot, emitters);
+        const float error = pilot.deviation * std::sqrt(state.tree[e].area / scene_area);
+        uneven[i] = error > irradiance_threshold;
+        if (uneven[i]) return;
+      }
+      const GivenLight light = sample_given_light(state, e, kKept, emitters);
       state.given_light[e] = light.mean;
       if (!state.outer_light.empty()) state.outer_light[e] = light.outer;
       state.given_light_known[e] = 1;
-      const float error = light.deviation * std::sqrt(state.tree[e].area / scene_area);
-      uneven[i] =
-          error > irradiance_threshold && state.tree.cell_size(e) > state.options.feature_size;
     });
     std::vector<ElementId> split;
     for (std::size_t i = 0; i < open.size(); ++i)

@@ -9,6 +9,8 @@
 namespace halflight {
 namespace {
 
+// Fewer rays that agree say little: stopping only where they agree would lose what they missed.
+constexpr int kRaysToJudgeBy = 8;
 // Points of a triangle looked at, however few rays go there.
 constexpr int kLeastPoints = 16;
 
@@ -216,7 +218,7 @@ Rgb EmitterTree::from_triangle(const EmittingSide& e, const Vec3& x, const Vec3&
   };
   shoot(rays);
   const bool mixed = seen_sum > 1e-4f * kernel_sum && seen_sum < 0.9999f * kernel_sum;
-  if ((mixed || e.textured) && more_rays > rays) shoot(more_rays);
+  if (mixed && rays >= kRaysToJudgeBy && more_rays > rays) shoot(more_rays);
   return kernel_sum > 0.f ? kPi * form_factor * seen_radiance / kernel_sum : Rgb(0.f);
 }
 
