@@ -91,7 +91,8 @@ Mat4 local_transform(const JsonCursor& node) {
     Mat4 m(1.0);
     for (int column = 0; column < 4; ++column)
       for (int row = 0; row < 4; ++row)
-        m[column][row] = static_cast<double>(numbers[static_cast<std::size_t>(4 * column + row)]);
+        m[column][row] = static_cast<double>(
+            numbers[4 * static_cast<std::size_t>(column) + static_cast<std::size_t>(row)]);
     return m;
   }
   Vec3 translation(0.f), scale(1.f);

@@ -196,7 +196,7 @@ Result<void> check(const std::vector<LitPrimitive>& primitives, const std::files
 Result<void> write_lit_glb(const std::filesystem::path& path, const Scene& scene,
                            const Geometry& geometry, const std::vector<LitPrimitive>& primitives,
                            float exposure) {
-  if (const auto ok = check(primitives, path); !ok) return ok;
+  if (auto ok = check(primitives, path); !ok) return ok;
   LitFile file{.scene = scene, .geometry = geometry, .exposure = exposure};
   write_cameras_and_lights(scene, file.glb);
   json roots = json::array();

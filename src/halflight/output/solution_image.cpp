@@ -91,7 +91,8 @@ Image solution_image(const SolverState& state, const SolutionReader& reader, con
     const std::size_t count = std::min(band, image.pixels.size() - first);
     parallel_for(count, 16, [&](std::size_t i) {
       const std::size_t pixel = first + i;
-      const Vec2 corner(static_cast<float>(pixel % columns), static_cast<float>(pixel / columns));
+      const std::size_t row = pixel / columns;
+      const Vec2 corner(static_cast<float>(pixel % columns), static_cast<float>(row));
       Rgb sum(0.f);
       for (int k = 0; k < samples_per_pixel; ++k)
         sum += radiance(camera.through(corner + r2_sequence(static_cast<std::uint32_t>(k))),

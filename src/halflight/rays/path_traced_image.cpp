@@ -18,7 +18,8 @@ Image shade_pixels(int width, int height, std::uint64_t seed, const Progress& pr
     if (progress.cancelled()) break;
     parallel_for(std::min(band, image.pixels.size() - first), 16, [&](std::size_t i) {
       const std::size_t pixel = first + i;
-      const Vec2 corner(static_cast<float>(pixel % columns), static_cast<float>(pixel / columns));
+      const std::size_t row = pixel / columns;
+      const Vec2 corner(static_cast<float>(pixel % columns), static_cast<float>(row));
       image.pixels[pixel] = shade(corner, hash(seed, pixel));
     });
     const std::size_t done = std::min(first + band, image.pixels.size());
