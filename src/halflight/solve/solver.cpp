@@ -132,7 +132,7 @@ void advance(SolverState& state, const Progress& progress) {
   update_given_light(state, record.irradiance_threshold, nullptr);
   if (state.options.links == LinkMaker::sampled && pass + 1 == state.options.passes)
     links = replace_by_sampled_links(state, record.irradiance_threshold);
-  state.links = LinkTable(state.tree.size(), std::move(links));
+  state.links = LinkTable(state.tree.size(), links);
   report(0.8);
   record.refine_seconds = seconds_since(start);
 

@@ -40,7 +40,7 @@ Vec3 PackedDirection::unpack() const {
   return glm::normalize(v);
 }
 
-LinkTable::LinkTable(std::size_t element_count, std::vector<ReceiverLink> links)
+LinkTable::LinkTable(std::size_t element_count, const std::vector<ReceiverLink>& links)
     : first_(element_count + 1, 0), links_(links.size()) {
   for (const ReceiverLink& l : links) ++first_[l.receiver.value + 1];
   for (std::size_t i = 0; i < element_count; ++i) first_[i + 1] += first_[i];

@@ -42,7 +42,7 @@ struct ReceiverLink {
 class LinkTable {
  public:
   LinkTable() = default;
-  LinkTable(std::size_t element_count, std::vector<ReceiverLink> links);
+  LinkTable(std::size_t element_count, const std::vector<ReceiverLink>& links);
 
   std::size_t size() const { return links_.size(); }
   std::span<const Link> of(ElementId receiver) const {
