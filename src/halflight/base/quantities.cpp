@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 
+#include <fmt/format.h>
+
 namespace halflight {
 namespace {
 
@@ -23,7 +25,7 @@ Result<double> parse(std::string_view text, std::span<const Unit> units, const c
   if (error == std::errc() && std::isfinite(number) && number >= 0.0)
     for (const Unit& unit : units)
       if (suffix == unit.name) return number * unit.factor;
-  return input_error("'" + std::string(text) + "' is not a " + kind, {}, remedy);
+  return input_error(fmt::format("'{}' is not a {}", text, kind), {}, remedy);
 }
 
 }  // namespace
