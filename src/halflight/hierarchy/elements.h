@@ -77,6 +77,10 @@ class ElementTree {
   CellPoint sample(ElementId cell, Vec2 u) const;
   // The leaf cell of a side at a point of its surface; invalid when the side is not live.
   ElementId find_leaf(SideId side, const Vec3& position) const;
+  // The leaf cell that a ray has met.
+  ElementId leaf_hit(const RayHit& hit) const {
+    return find_leaf(surfaces_->side_hit(hit), hit_position(*geometry_, hit));
+  }
   // Calls visit(span of corners in world space) for each convex piece of a cell.
   template <class Visit>
   void for_each_piece(ElementId cell, const Visit& visit) const;

@@ -130,7 +130,7 @@ void follow_emission(const Scene& scene, const Geometry& g, const Surfaces& surf
         const Vec3 p = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
         const auto hit =
             rays.closest_hit(rays.lift(p, n), direction_about(n, k, hash(i)), kInfinity, seed);
-        if (hit) visit(side_of(surfaces.of_triangle[hit->triangle], !hit->front));
+        if (hit) visit(surfaces.side_hit(*hit));
       }
     }
   });

@@ -7,6 +7,7 @@
 
 #include "halflight/base/ids.h"
 #include "halflight/base/vec.h"
+#include "halflight/rays/ray_scene.h"
 #include "halflight/scene/geometry.h"
 
 namespace halflight {
@@ -46,6 +47,9 @@ struct Surfaces {
 
   const Surface& operator[](SurfaceId id) const { return surfaces[id]; }
   const Surface& operator[](SideId id) const { return surfaces[surface_of(id)]; }
+  SideId side_hit(const RayHit& hit) const {
+    return side_of(of_triangle[hit.triangle], !hit.front);
+  }
   Vec3 normal(SideId id) const {
     const Vec3 n = surfaces[surface_of(id)].normal;
     return is_back(id) ? -n : n;

@@ -64,10 +64,7 @@ Rgb SolutionReader::direct(const Vec3& x, const Vec3& n) const {
 
 Rgb SolutionReader::reflected_radiosity(const RayHit& hit) const {
   const World& world = *state_->world;
-  const SideId side = side_of(state_->surfaces->of_triangle[hit.triangle], !hit.front);
-  const auto [a, b, c] = world.geometry.corners(hit.triangle);
-  const Vec3 at = a + hit.barycentric.x * (b - a) + hit.barycentric.y * (c - a);
-  const ElementId leaf = state_->tree.find_leaf(side, at);
+  const ElementId leaf = state_->tree.leaf_hit(hit);
   if (!leaf.valid()) return Rgb(0.f);
   return reflectance_at(world.scene, world.geometry, hit.triangle, hit.barycentric) *
          state_->irradiance[leaf];
@@ -83,8 +80,7 @@ Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
     const Vec3 w = frame.to_world(cosine_hemisphere(r2_sequence(index)));
     const auto hit = world.rays.closest_hit(from, w, kInfinity, hash(index));
     if (!hit) continue;
-    const SideId side = side_of(state_->surfaces->of_triangle[hit->triangle], !hit->front);
-    if (!is_bright_[side]) sum += reflected_radiosity(*hit);
+    if (!is_bright_[state_->surfaces->side_hit(*hit)]) sum += reflected_radiosity(*hit);
   }
   return sum / static_cast<float>(options_.gather_rays) + bright_.irradiance(x, n, options_.direct);
 }

@@ -69,10 +69,7 @@ Image solution_image(const SolverState& state, const SolutionReader& reader, con
   const auto radiance = [&](const CameraRay& ray, std::uint64_t seed) {
     const auto hit = world.rays.closest_hit(ray.origin, ray.direction, kInfinity, seed);
     if (!hit) return world.scene.sky;
-    const auto [a, b, c] = world.geometry.corners(hit->triangle);
-    const Vec3 x = a + hit->barycentric.x * (b - a) + hit->barycentric.y * (c - a);
-    const Vec3 n =
-        glm::normalize(world.geometry.scaled_normal(hit->triangle)) * (hit->front ? 1.f : -1.f);
+    const Vec3 x = hit_position(world.geometry, *hit), n = hit_normal(world.geometry, *hit);
     const auto indirect = (hit->front ? front : back).indirect(x, n);
     const Rgb irradiance = indirect ? reader.direct(x, n) + *indirect
                                     : reader.read({x, n, hit->triangle}).irradiance();

@@ -26,10 +26,7 @@ Vec3 shadow_ray_end(const RayScene& rays, const LightSample& s) {
 }  // namespace
 
 SurfacePoint surface_point(const Geometry& geometry, const RayHit& hit) {
-  const auto [a, b, c] = geometry.corners(hit.triangle);
-  const Vec3 normal = glm::normalize(geometry.scaled_normal(hit.triangle));
-  return {a + hit.barycentric.x * (b - a) + hit.barycentric.y * (c - a),
-          hit.front ? normal : -normal};
+  return {hit_position(geometry, hit), hit_normal(geometry, hit)};
 }
 
 Rgb PathTracer::directional_light(const Vec3& p, const Vec3& n) const {

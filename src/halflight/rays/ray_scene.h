@@ -18,6 +18,16 @@ struct RayHit {
   bool front = true;  // the ray met the counter-clockwise side
 };
 
+inline Vec3 hit_position(const Geometry& geometry, const RayHit& hit) {
+  const auto [a, b, c] = geometry.corners(hit.triangle);
+  return a + hit.barycentric.x * (b - a) + hit.barycentric.y * (c - a);
+}
+
+// Unit, towards the side that the ray met.
+inline Vec3 hit_normal(const Geometry& geometry, const RayHit& hit) {
+  return glm::normalize(geometry.scaled_normal(hit.triangle)) * (hit.front ? 1.f : -1.f);
+}
+
 // Ray queries against the flattened scene. Surfaces of opacity below 1 let light straight through
 // with weight 1 - opacity. Refers to scene and geometry: they must outlive it. Thread-safe.
 class RayScene {

@@ -9,12 +9,6 @@ namespace {
 // Tries to find a cell of a cluster that faces a given direction.
 constexpr std::uint32_t kFacingAttempts = 16;
 
-ElementId hit_leaf(const ElementTree& tree, const RayHit& hit) {
-  const SideId side = side_of(tree.surfaces().of_triangle[hit.triangle], !hit.front);
-  const auto [a, b, c] = tree.geometry().corners(hit.triangle);
-  return tree.find_leaf(side, a + hit.barycentric.x * (b - a) + hit.barycentric.y * (c - a));
-}
-
 // Cosine-distributed rays from points spread over the cell: each hit carries 1 / n of the
 // hemisphere.
 void sample_cell(const ElementTree& tree, const RayScene& rays,
@@ -31,7 +25,7 @@ void sample_cell(const ElementTree& tree, const RayScene& rays,
     const auto hit = rays.closest_hit(rays.lift(x, normal), w, kInfinity, hash(cell.value, k));
     if (!hit) continue;
     Link link;
-    link.source = hit_leaf(tree, *hit);
+    link.source = tree.leaf_hit(*hit);
     if (!link.source.valid()) continue;
     link.weight = 1.f / (static_cast<float>(n) * opacity[link.source]);
     links.push_back({cell, link});
@@ -77,7 +71,7 @@ void sample_cluster(const ElementTree& tree, const RayScene& rays,
     const auto hit = rays.closest_hit(rays.lift(x, tree.normal(cell)), w, kInfinity, seed);
     if (!hit) continue;
     Link link;
-    link.source = hit_leaf(tree, *hit);
+    link.source = tree.leaf_hit(*hit);
     if (!link.source.valid()) continue;
     link.weight = 4.f / (static_cast<float>(n) * opacity[link.source]);
     link.direction = PackedDirection(w);

@@ -209,10 +209,7 @@ TransferEstimate estimate_touching_transfer(const TransferScene& scene, ElementI
     const auto hit =
         scene.rays.closest_hit(scene.rays.lift(x.position, x.normal), w, kInfinity, hash(seed, k));
     if (!hit) continue;
-    const SideId side = side_of(tree.surfaces().of_triangle[hit->triangle], !hit->front);
-    const auto [a, b, c] = tree.geometry().corners(hit->triangle);
-    ElementId at =
-        tree.find_leaf(side, a + hit->barycentric.x * (b - a) + hit->barycentric.y * (c - a));
+    ElementId at = tree.leaf_hit(*hit);
     if (!at.valid()) continue;
     // The ray stopped in proportion to the opacity, by which radiosity is already reduced.
     const float radiosity = average(scene.radiosity[at]) / scene.opacity[at];
