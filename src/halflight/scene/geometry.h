@@ -69,6 +69,14 @@ struct Geometry {
     const auto [a, b, c] = corners(t);
     return glm::cross(b - a, c - a);
   }
+  // Weights of the 2nd and 3rd corner at a point in the triangle's plane.
+  Vec2 barycentric(TriangleId t, const Vec3& p) const {
+    const auto [a, b, c] = corners(t);
+    const Vec3 n = glm::cross(b - a, c - a);
+    const float area = glm::dot(n, n);
+    return {glm::dot(glm::cross(p - a, c - a), n) / area,
+            glm::dot(glm::cross(b - a, p - a), n) / area};
+  }
 };
 
 Geometry flatten(const Scene& scene);

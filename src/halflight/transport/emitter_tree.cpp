@@ -1,9 +1,11 @@
 #include "halflight/transport/emitter_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "halflight/rays/sampling.h"
+#include "halflight/rays/spherical_triangle.h"
 #include "halflight/transport/form_factor.h"
 
 namespace halflight {
@@ -11,8 +13,14 @@ namespace {
 
 // Fewer rays that agree say little: stopping only where they agree would lose what they missed.
 constexpr int kRaysToJudgeBy = 8;
-// Points of a triangle looked at, however few rays go there.
-constexpr int kLeastPoints = 16;
+// Emitters that cover more of the sky (sr) are sampled by solid angle, others by area.
+constexpr float kLargeView = 2e-3f;
+// From this many times its size away a triangle's form factor is that of its middle, to 1 %.
+constexpr float kFar = 5.f;
+// Places of a triangle looked at, however few rays go there.
+constexpr int kLeastPlaces = 8;
+// Directions below the horizon keep this much of the cosine that samples follow.
+constexpr float kLeastCosine = 0.01f;
 
 constexpr std::uint32_t kTextureSamples = 16;
 
@@ -22,6 +30,12 @@ float cosine_of_difference(float cos_a, float cos_b) {
   const float sin_a = std::sqrt(std::max(0.f, 1.f - cos_a * cos_a));
   const float sin_b = std::sqrt(std::max(0.f, 1.f - cos_b * cos_b));
   return cos_a * cos_b + sin_a * sin_b;
+}
+
+// For samples that must not hang together with those of this shift.
+Vec2 other_shift(Vec2 shift, std::uint32_t emitter) {
+  return random_shift(
+      hash(std::bit_cast<std::uint32_t>(shift.x), std::bit_cast<std::uint32_t>(shift.y), emitter));
 }
 
 // cos cos / r^2 between two oriented points, unit normals; without 1 / pi.
@@ -64,7 +78,14 @@ EmitterTree::EmitterTree(const World& world, std::vector<EmittingSide> emitters)
   nodes_.reserve(2 * emitters_.size());
   build(0, static_cast<std::uint32_t>(emitters_.size()));
   float sum = 0.f;
-  for (const EmittingSide& e : emitters_) cumulative_power_.push_back(sum += e.power);
+  for (const EmittingSide& e : emitters_) {
+    cumulative_power_.push_back(sum += e.power);
+    const auto [a, b, c] = world.geometry.corners(e.triangle);
+    const Vec3 middle = (a + b + c) / 3.f;
+    const float size = 2.f * std::max({glm::distance(a, middle), glm::distance(b, middle),
+                                       glm::distance(c, middle)});
+    shapes_.push_back({middle, normal_of(e), size});
+  }
 }
 
 Vec3 EmitterTree::normal_of(const EmittingSide& e) const {
@@ -126,15 +147,20 @@ bool EmitterTree::cannot_light(const Node& node, const Vec3& x, const Vec3& n) c
   return cosine_of_difference(cosine_of_difference(cos_axis, node.cos_spread), cos_box) <= 0.f;
 }
 
-// Unoccluded: closed form for single triangles, an upper bound for groups.
+// Unoccluded: close for single triangles, an upper bound for groups.
 float EmitterTree::expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const {
-  if (cannot_light(node, x, n)) return 0.f;
   if (node.right == 0) {
+    const Shape& shape = shapes_[node.first];
+    const Vec3 between = x - shape.middle;
+    if (glm::dot(shape.normal, between) <= 0.f) return 0.f;
     const EmittingSide& e = emitters_[node.first];
-    const auto corners = world_->geometry.corners(e.triangle);
-    if (glm::dot(normal_of(e), x - corners[0]) <= 0.f) return 0.f;
-    return kPi * average(e.radiance) * polygon_form_factor(x, n, corners);
+    const bool above = glm::dot(n, between) < -0.5f * shape.size;
+    if (above && glm::dot(between, between) > kFar * kFar * shape.size * shape.size)
+      return e.power * point_kernel(x, n, shape.middle, shape.normal);
+    return kPi * average(e.radiance) *
+           polygon_form_factor(x, n, world_->geometry.corners(e.triangle));
   }
+  if (cannot_light(node, x, n)) return 0.f;
   const Vec3 nearest = glm::clamp(x, node.box.lower, node.box.upper) - x;
   const float size = node.box.diagonal();
   return node.power / std::max(glm::dot(nearest, nearest), 1e-4f * size * size);
@@ -172,45 +198,74 @@ std::vector<EmitterTree::CutNode> EmitterTree::choose_cut(const Vec3& x, const V
   return cut;
 }
 
-Rgb EmitterTree::from_triangle(const EmittingSide& e, const Vec3& x, const Vec3& n, int rays,
+// The closed form carries the kernel; rays carry its visible share, weighted by the kernel.
+Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3& n, int rays,
                                int more_rays, Vec2 shift) const {
   const Geometry& g = world_->geometry;
+  const EmittingSide& e = emitters_[emitter];
+  const Vec3& normal = shapes_[emitter].normal;
   const auto corner = g.corners(e.triangle);
-  const Vec3 normal = normal_of(e);
-  if (glm::dot(normal, x - corner[0]) <= 0.f) return Rgb(0.f);
+  const float height = glm::dot(normal, corner[0] - x);
+  if (height >= 0.f) return Rgb(0.f);
   const float form_factor = polygon_form_factor(x, n, corner);
+  if (!(form_factor > 0.f)) return Rgb(0.f);
   const Vec3 from = world_->rays.lift(x, n);
-  // The closed form carries the kernel; rays carry its visible share, weighted by the kernel. Few
-  // rays each choose among several points in proportion to the kernel: what is near, and so more
-  // often seen, counts as it should, and no light is lost by a point below the horizon.
-  const int candidates = std::max(1, kLeastPoints / std::max(1, rays));
+
+  const SphericalTriangle view({corner[0] - x, corner[1] - x, corner[2] - x});
+  const bool large = view.solid_angle() > kLargeView;
+  const auto cosine = [&](int i) { return std::max(kLeastCosine, glm::dot(n, view.corner(i))); };
+  const std::array<float, 4> cosines{cosine(1), cosine(1), cosine(0), cosine(2)};
+  const auto at = [&](Vec2 b) {
+    return corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
+  };
+  struct Place {
+    Vec2 barycentric;
+    float kernel;  // over the density with which it was chosen
+  };
+  const auto choose = [&](Vec2 u) {
+    if (!large) {
+      const Vec2 b = uniform_triangle(u);
+      return Place{b, point_kernel(x, n, at(b), normal)};
+    }
+    const WarpedPoint warped = sample_bilinear(u, cosines);
+    const Vec3 w = view.direction(warped.u);
+    const Vec3 y = x + w * (height / std::min(glm::dot(w, normal), -1e-6f));
+    // Rounding must not carry it off the triangle, or behind it.
+    Vec2 b = glm::clamp(g.barycentric(e.triangle, y), 0.f, 1.f);
+    b /= std::max(1.f, b.x + b.y);
+    return Place{b, std::max(0.f, glm::dot(n, w)) / warped.density};
+  };
+
   float kernel_sum = 0.f, seen_sum = 0.f;
   Rgb seen_radiance(0.f);
+  // Few rays each choose among several places in proportion to the kernel: where most light comes
+  // from counts as it should, and none is lost by a place below the horizon.
+  const int candidates = std::max(1, kLeastPlaces / std::max(1, rays));
+  const Vec2 choice_shift = other_shift(shift, emitter);
+  const auto choose_one = [&](int ray) {
+    float choice = r2_sequence(static_cast<std::uint32_t>(ray), choice_shift).x;
+    Place chosen{Vec2(0.f), 0.f};
+    for (int k = 0; k < candidates; ++k) {
+      const auto index = static_cast<std::uint32_t>(ray * candidates + k);
+      const Place place = choose(r2_sequence(index, shift));
+      if (!(place.kernel > 0.f)) continue;
+      chosen.kernel += place.kernel;
+      // Keeps the newcomer with probability share, and stretches the choice to be used again.
+      const float share = place.kernel / chosen.kernel;
+      const bool keep = choice < share;
+      choice = keep ? choice / share : (choice - share) / (1.f - share);
+      if (keep) chosen.barycentric = place.barycentric;
+    }
+    return chosen;
+  };
   int taken = 0;
   const auto shoot = [&](int until) {
     for (; taken < until; ++taken) {
-      float kernel = 0.f;
-      Vec2 b(0.f);
-      Vec3 y(0.f);
-      float choice = r2_sequence(static_cast<std::uint32_t>(taken), shift).x;
-      for (int k = 0; k < candidates; ++k) {
-        const auto index = static_cast<std::uint32_t>(taken * candidates + k);
-        const Vec2 c = uniform_triangle(r2_sequence(index, shift));
-        const Vec3 at = corner[0] + c.x * (corner[1] - corner[0]) + c.y * (corner[2] - corner[0]);
-        const float own = point_kernel(x, n, at, normal);
-        if (!(own > 0.f)) continue;
-        kernel += own;
-        // Keeps the newcomer with probability share, and stretches the choice to be used again.
-        const float share = own / kernel;
-        const bool chosen = choice < share;
-        choice = chosen ? choice / share : (choice - share) / (1.f - share);
-        if (!chosen) continue;
-        b = c;
-        y = at;
-      }
+      const auto [b, kernel] = choose_one(taken);
       if (!(kernel > 0.f)) continue;
       kernel_sum += kernel;
-      const float seen = kernel * world_->rays.transmittance(from, world_->rays.lift(y, normal));
+      const float seen =
+          kernel * world_->rays.transmittance(from, world_->rays.lift(at(b), normal));
       seen_sum += seen;
       seen_radiance +=
           seen * (e.textured ? emission_at(world_->scene, g, e.triangle, b) : e.radiance);
@@ -229,8 +284,7 @@ Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int 
   const float before = node.first == 0 ? 0.f : cumulative_power_[node.first - 1];
   const auto begin = cumulative_power_.begin() + node.first;
   // Which emitter and which point of it must not hang together.
-  const Vec2 point_shift = random_shift(
-      hash(std::bit_cast<std::uint32_t>(shift.x), std::bit_cast<std::uint32_t>(shift.y)));
+  const Vec2 point_shift = other_shift(shift, node.first);
   Rgb sum(0.f);
   for (int k = 0; k < rays; ++k) {
     const float stratum = (static_cast<float>(k) + shift.x) / static_cast<float>(rays);
@@ -268,7 +322,7 @@ Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptio
       return std::max(1, static_cast<int>(std::ceil(share * static_cast<float>(most))));
     };
     if (node.right == 0)
-      sum += from_triangle(emitters_[node.first], x, n, rays_for(options.shadow_rays),
+      sum += from_triangle(node.first, x, n, rays_for(options.shadow_rays),
                            rays_for(options.penumbra_rays), shift);
     else
       sum += from_group(node, x, n, rays_for(options.penumbra_rays), shift);

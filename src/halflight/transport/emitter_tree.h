@@ -61,12 +61,18 @@ class EmitterTree {
   float expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const;
   std::vector<CutNode> choose_cut(const Vec3& x, const Vec3& n, const DirectLightOptions&) const;
   Vec3 normal_of(const EmittingSide& e) const;
-  Rgb from_triangle(const EmittingSide& e, const Vec3& x, const Vec3& n, int rays, int more_rays,
+  Rgb from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3& n, int rays, int more_rays,
                     Vec2 shift) const;
   Rgb from_group(const Node& node, const Vec3& x, const Vec3& n, int rays, Vec2 shift) const;
 
+  struct Shape {
+    Vec3 middle, normal;
+    float size = 0.f;  // diameter about the middle
+  };
+
   const World* world_;
   std::vector<EmittingSide> emitters_;
+  std::vector<Shape> shapes_;            // of each emitter
   std::vector<float> cumulative_power_;  // after each emitter, over all
   std::vector<Node> nodes_;
 };
