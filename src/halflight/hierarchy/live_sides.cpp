@@ -12,6 +12,9 @@ namespace halflight {
 namespace {
 
 constexpr std::uint32_t kRaysPerBody = 256;
+constexpr std::uint32_t kWalks = 64;
+constexpr int kStepsOfWalk = 8;
+constexpr float kLargestChamber = 0.25f;  // share of the scene's diagonal
 constexpr std::uint32_t kRaysPerLargeSide = 64;
 constexpr std::uint32_t kRaysPerEmitter = 32;  // of each side of each emitting triangle
 constexpr float kLargeSurface = 1e-3f;         // share of the largest surface's area
@@ -97,6 +100,37 @@ bool sees_only_itself(const Geometry& g, const RayScene& rays, const Components&
   return true;
 }
 
+// No random walk that starts on this side leaves the bounds of its body: so it is with the insides
+// of things that have no bottom and stand on the floor, and of those whose bottom lies in it. Only
+// small bodies are asked: a dark room behind a door left ajar must not be taken for one.
+bool is_sealed_off(const Scene& scene, const Geometry& g, const RayScene& rays,
+                   const Components& components, ComponentId id, bool back) {
+  const auto& members = components.members[id.value];
+  Bounds3f box;
+  for (const TriangleId t : members)
+    for (const Vec3& corner : g.corners(t)) box.extend(corner);
+  if (box.diagonal() > kLargestChamber * g.bounds.diagonal()) return false;
+  const Vec3 margin(4.f * rays.lift_distance());
+  for (std::uint32_t i = 0; i < kWalks; ++i) {
+    const TriangleId start = members[hash(id.value, i, back, 1) % members.size()];
+    const auto [a, b, c] = g.corners(start);
+    Vec3 p = (a + b + c) / 3.f;
+    Vec3 n = glm::normalize(g.scaled_normal(start)) * (back ? -1.f : 1.f);
+    for (int step = 0; step < kStepsOfWalk; ++step) {
+      const std::uint64_t seed = hash(id.value, i, back, step + 2);
+      const auto hit =
+          rays.closest_hit(rays.lift(p, n), direction_about(n, 0, seed), kInfinity, seed);
+      if (!hit || scene.materials[g.materials[hit->triangle]].emits()) return false;
+      p = hit_position(g, *hit);
+      n = hit_normal(g, *hit);
+      if (glm::any(glm::lessThan(p, box.lower - margin)) ||
+          glm::any(glm::greaterThan(p, box.upper + margin)))
+        return false;
+    }
+  }
+  return true;
+}
+
 bool sees_nothing(const Geometry& g, const Surfaces& surfaces, const RayScene& rays, SideId side) {
   const Surface& s = surfaces[side];
   const Vec3 n = surfaces.normal(side);
@@ -165,7 +199,7 @@ IdVector<SideId, std::uint8_t> find_live_sides(const Scene& scene, const Geometr
   parallel_for(2 * bodies, 8, [&](std::size_t i) {
     const ComponentId id(i / 2);
     const bool back = i % 2 != 0;
-    if (!components.closed[id.value] || components.transparent[id.value] || lit.bodies[i]) return;
+    if (components.transparent[id.value] || lit.bodies[i]) return;
     const bool lit_by_itself =
         std::any_of(components.members[id.value].begin(), components.members[id.value].end(),
                     [&](TriangleId t) { return scene.materials[g.materials[t]].emits(); }) &&
@@ -173,7 +207,8 @@ IdVector<SideId, std::uint8_t> find_live_sides(const Scene& scene, const Geometr
     if (lit_by_itself) return;
     for (const PunctualLight& light : g.lights)
       if (light.kind != Light::Kind::directional) return;
-    dead[i] = sees_only_itself(g, rays, components, id, back);
+    dead[i] = (components.closed[id.value] && sees_only_itself(g, rays, components, id, back)) ||
+              is_sealed_off(scene, g, rays, components, id, back);
   });
 
   const bool lit_from_outside = max_component(scene.sky) > 0.f || !g.lights.empty();

@@ -9,6 +9,31 @@ namespace {
 // Tries to find a cell of a cluster that faces a given direction.
 constexpr std::uint32_t kFacingAttempts = 16;
 
+// Adds what one of n rays of the receiver has met.
+struct RayTally {
+  std::vector<ReceiverLink>& links;
+  std::size_t first = links.size();
+  int buried = 0;
+
+  void add(const ElementTree& tree, const IdVector<ElementId, float>& opacity, ElementId receiver,
+           const RayHit& hit, float weight, PackedDirection direction = {}) {
+    const ElementId source = tree.leaf_hit(hit);
+    if (!source.valid()) {
+      // A side that never sees light: the ray began in a place covered by a closed body.
+      ++buried;
+      return;
+    }
+    links.push_back({receiver, {source, weight / opacity[source], 0.f, direction}});
+  }
+  // The rays that began in the open stand for the covered ones too: the receiver's light is that
+  // of its visible part.
+  void make_up_for_buried(int n) {
+    if (buried == 0 || buried == n) return;
+    const float scale = static_cast<float>(n) / static_cast<float>(n - buried);
+    for (std::size_t i = first; i < links.size(); ++i) links[i].link.weight *= scale;
+  }
+};
+
 // Cosine-distributed rays from points spread over the cell: each hit carries 1 / n of the
 // hemisphere.
 void sample_cell(const ElementTree& tree, const RayScene& rays,
@@ -18,18 +43,15 @@ void sample_cell(const ElementTree& tree, const RayScene& rays,
   const Frame frame = Frame::from_normal(normal);
   const Vec2 shift_x = random_shift(hash(cell.value, 23)),
              shift_w = random_shift(hash(cell.value, 29));
+  RayTally tally{links};
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
     // Points and directions walk through their sequences with different strides.
     const Vec3 x = tree.sample(cell, r2_sequence(7 * k, shift_x)).position;
     const Vec3 w = frame.to_world(cosine_hemisphere(r2_sequence(k, shift_w)));
     const auto hit = rays.closest_hit(rays.lift(x, normal), w, kInfinity, hash(cell.value, k));
-    if (!hit) continue;
-    Link link;
-    link.source = tree.leaf_hit(*hit);
-    if (!link.source.valid()) continue;
-    link.weight = 1.f / (static_cast<float>(n) * opacity[link.source]);
-    links.push_back({cell, link});
+    if (hit) tally.add(tree, opacity, cell, *hit, 1.f / static_cast<float>(n));
   }
+  tally.make_up_for_buried(n);
 }
 
 // A cell of the cluster that faces w, chosen with density area * cosine; invalid when none was
@@ -60,6 +82,7 @@ void sample_cluster(const ElementTree& tree, const RayScene& rays,
                     const IdVector<ElementId, float>& opacity, ElementId cluster, int n,
                     std::vector<ReceiverLink>& links) {
   const Vec2 shift = random_shift(hash(cluster.value, 31));
+  RayTally tally{links};
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
     const Vec2 u = r2_sequence(k, shift);
     const float z = 1.f - 2.f * u.x, r = std::sqrt(std::max(0.f, 1.f - z * z));
@@ -69,14 +92,10 @@ void sample_cluster(const ElementTree& tree, const RayScene& rays,
     if (!cell.valid()) continue;
     const Vec3 x = tree.sample(cell, random_shift(seed)).position;
     const auto hit = rays.closest_hit(rays.lift(x, tree.normal(cell)), w, kInfinity, seed);
-    if (!hit) continue;
-    Link link;
-    link.source = tree.leaf_hit(*hit);
-    if (!link.source.valid()) continue;
-    link.weight = 4.f / (static_cast<float>(n) * opacity[link.source]);
-    link.direction = PackedDirection(w);
-    links.push_back({cluster, link});
+    if (hit)
+      tally.add(tree, opacity, cluster, *hit, 4.f / static_cast<float>(n), PackedDirection(w));
   }
+  tally.make_up_for_buried(n);
 }
 
 }  // namespace
