@@ -85,6 +85,7 @@ ElementTree::ElementTree(const Geometry& geometry, const Surfaces& surfaces,
     elements_[parent].child_count = static_cast<std::uint32_t>(elements_.size()) - first;
   }
   initial_size_ = elements_.size();
+  crossings_.resize(initial_size_);
   cluster_total_ = open.size();
   for (std::size_t i = elements_.size(); i-- > 1;) {
     const Element& e = elements_[ElementId(i)];
@@ -171,6 +172,9 @@ void ElementTree::split(ElementId cell) {
   }
   elements_[cell].first_child = first;
   elements_[cell].child_count = static_cast<std::uint32_t>(elements_.size()) - first;
+  crossings_.resize(elements_.size());
+  crossings_[cell] = {first & 0x3fffffffu, static_cast<std::uint32_t>(axis) & 1u,
+                      elements_[cell].child_count == 1 ? 1u : 0u, at};
 }
 
 CellPoint ElementTree::sample(ElementId cell, Vec2 u) const {
@@ -211,17 +215,8 @@ ElementId ElementTree::find_leaf(SideId side, const Vec3& position) const {
   ElementId at = side_roots_[side];
   if (!at.valid()) return at;
   const Vec2 uv = (*surfaces_)[side].to_plane(position);
-  while (!elements_[at].is_leaf()) {
-    const Element& e = elements_[at];
-    if (e.child_count == 1) {
-      at = ElementId(e.first_child);
-      continue;
-    }
-    const Vec2 boundary = elements_[ElementId(e.first_child)].cell_upper;
-    const Vec2 extent = e.cell_upper - e.cell_lower;
-    const int axis = extent.x >= extent.y ? 0 : 1;
-    at = ElementId(e.first_child + (uv[axis] > boundary[axis] ? 1 : 0));
-  }
+  for (Crossing c = crossings_[at]; c.first_child != 0; c = crossings_[at])
+    at = ElementId(c.first_child + (c.only_child == 0 && uv[c.axis] > c.boundary ? 1 : 0));
   return at;
 }
 

@@ -92,9 +92,18 @@ class ElementTree {
   void split_polygon(TriangleId triangle, std::span<const Vec2> polygon, int axis, float at,
                      std::vector<Fragment>* halves, std::vector<Vec2>* corners) const;
 
+  // All that a search for a leaf needs of an element, packed for the cache.
+  struct Crossing {
+    std::uint32_t first_child : 30 = 0;  // 0: a leaf
+    std::uint32_t axis : 1 = 0;
+    std::uint32_t only_child : 1 = 0;
+    float boundary = 0.f;  // beyond it lies the second child
+  };
+
   const Geometry* geometry_;
   const Surfaces* surfaces_;
   IdVector<ElementId, Element> elements_;
+  IdVector<ElementId, Crossing> crossings_;  // of cells
   IdVector<SideId, ElementId> side_roots_;
   std::vector<Fragment> fragments_;
   std::vector<Vec2> fragment_corners_;

@@ -55,7 +55,8 @@ SolutionReader::SolutionReader(const SolverState& state, const ReadOptions& opti
     : state_(&state),
       options_(options),
       emitters_(*state.world, find_emitters(*state.world)),
-      bright_(*state.world, find_bright_reflectors(state, is_bright_)) {}
+      bright_(*state.world, find_bright_reflectors(state, is_bright_)),
+      irradiance_(state) {}
 
 Rgb SolutionReader::direct(const Vec3& x, const Vec3& n) const {
   return emitters_.irradiance(x, n, options_.direct) + punctual_irradiance(*state_->world, x, n) +
@@ -67,7 +68,7 @@ Rgb SolutionReader::reflected_radiosity(const RayHit& hit) const {
   const ElementId leaf = state_->tree.leaf_hit(hit);
   if (!leaf.valid()) return Rgb(0.f);
   return reflectance_at(world.scene, world.geometry, hit.triangle, hit.barycentric) *
-         state_->irradiance[leaf];
+         irradiance_.at(leaf, hit_position(world.geometry, hit));
 }
 
 Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {

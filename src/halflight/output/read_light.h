@@ -6,13 +6,14 @@
 #include <memory>
 
 #include "halflight/output/light_reader.h"
+#include "halflight/output/smooth_irradiance.h"
 #include "halflight/solve/solver.h"
 #include "halflight/transport/emitter_tree.h"
 
 namespace halflight {
 
 struct ReadOptions {
-  int gather_rays = 256;  // of each point's hemisphere
+  int gather_rays = 1024;  // of each point's hemisphere
   DirectLightOptions direct;
 };
 
@@ -48,6 +49,7 @@ class SolutionReader {
   // meet them would show: they are read like emitters, and the gather leaves them out.
   IdVector<SideId, std::uint8_t> is_bright_;
   EmitterTree bright_;
+  SmoothIrradiance irradiance_;
 };
 
 }  // namespace halflight

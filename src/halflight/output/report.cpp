@@ -86,13 +86,9 @@ std::string Report::json(const SolverState& state) const {
   report["wall_seconds"] = std::chrono::duration<double>(Clock::now() - start_).count();
   report["cpu_seconds"] = cpu_seconds();
   report["peak_rss_bytes"] = peak_rss_bytes();
-  std::uint64_t rays = 0;
   int sweeps = 0;
-  for (const PassRecord& p : state.history) {
-    rays += p.rays;
-    sweeps += p.sweeps;
-  }
-  report["rays"] = {{"exact", rays}, {"multi_resolution", 0}};
+  for (const PassRecord& p : state.history) sweeps += p.sweeps;
+  report["rays"] = {{"exact", state.world->rays.ray_total()}, {"multi_resolution", 0}};
   report["clusters"] = state.tree.cluster_total();
   report["elements"] = state.tree.size();
   report["links"] = state.links.size();

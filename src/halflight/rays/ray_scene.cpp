@@ -8,6 +8,7 @@
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 
+#include "halflight/base/counter.h"
 #include "halflight/rays/sampling.h"
 
 namespace halflight {
@@ -54,6 +55,7 @@ struct RayScene::Impl {
   RTCScene scene = nullptr;
   const Scene* source = nullptr;
   const Geometry* geometry = nullptr;
+  Counter rays;
   // Embree geometry 0 holds the opaque triangles, 1 those that may let light through.
   std::array<std::vector<TriangleId>, 2> triangles;
 
@@ -137,6 +139,7 @@ RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 float RayScene::transmittance(const Vec3& from, const Vec3& to) const {
+  impl_->rays.add();
   Context context = impl_->context(0);
   RTCRay ray = make_ray(from, to - from, 1.f);
   rtcOccluded1(impl_->scene, &context, &ray);
@@ -144,6 +147,7 @@ float RayScene::transmittance(const Vec3& from, const Vec3& to) const {
 }
 
 float RayScene::transmittance_to_sky(const Vec3& from, const Vec3& direction) const {
+  impl_->rays.add();
   Context context = impl_->context(0);
   RTCRay ray = make_ray(from, direction, kInfinity);
   rtcOccluded1(impl_->scene, &context, &ray);
@@ -152,6 +156,7 @@ float RayScene::transmittance_to_sky(const Vec3& from, const Vec3& direction) co
 
 std::optional<RayHit> RayScene::closest_hit(const Vec3& origin, const Vec3& direction,
                                             float max_distance, std::uint64_t seed) const {
+  impl_->rays.add();
   Context context = impl_->context(seed);
   RTCRayHit query{};
   query.ray = make_ray(origin, direction, max_distance);
@@ -184,6 +189,8 @@ std::vector<TriangleId> RayScene::triangles_near(const Vec3& point, float radius
   std::sort(found.triangles.begin(), found.triangles.end());
   return std::move(found.triangles);
 }
+
+std::uint64_t RayScene::ray_total() const { return impl_->rays.total(); }
 
 const char* RayScene::instruction_set() { return kInstructionSet; }
 

@@ -53,6 +53,8 @@ class RayScene {
   // rounding error of coordinates of this scene.
   Vec3 lift(const Vec3& p, const Vec3& n) const { return p + n * lift_distance_; }
   float lift_distance() const { return lift_distance_; }
+  // Rays traced so far, of all kinds.
+  std::uint64_t ray_total() const;
   // Names the instruction set that the answers depend on; part of the determinism promise.
   static const char* instruction_set();
 

@@ -13,14 +13,6 @@ constexpr int kSkyRays = 16;  // of each point
 constexpr DirectLightOptions kCellDirectLight{
     .shadow_rays = 8, .penumbra_rays = 8, .largest_group_share = 0.05f, .smallest_angle = 0.01f};
 
-Vec2 barycentric_of(const Geometry& g, const CellPoint& p) {
-  const auto [a, b, c] = g.corners(p.triangle);
-  const Vec3 n = glm::cross(b - a, c - a);
-  const float area = glm::dot(n, n);
-  return {glm::dot(glm::cross(p.position - a, c - a), n) / area,
-          glm::dot(glm::cross(b - a, p.position - a), n) / area};
-}
-
 // Streams of samples: to decide with, and to keep.
 constexpr std::uint64_t kPilot = 1, kKept = 2;
 
@@ -30,6 +22,14 @@ struct GivenLight {
   float deviation = 0.f;
 };
 
+// Covered by a closed body: straight above lies a side that never sees light.
+bool is_buried(const SolverState& state, const Vec3& x, const Vec3& n, std::uint64_t seed) {
+  const RayScene& rays = state.world->rays;
+  const auto hit = rays.closest_hit(rays.lift(x, n), n, kInfinity, seed);
+  return hit && !state.tree.leaf_hit(*hit).valid();
+}
+
+// Of the part that is not covered.
 GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uint64_t stream,
                               const EmitterTree* emitters) {
   const Vec3 n = state.tree.normal(cell);
@@ -38,20 +38,25 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uin
   GivenLight result;
   float sum = 0.f, squares = 0.f;
   const Vec2 shift = random_shift(hash(cell.value, stream, 11));
+  float count = 0.f;
   for (std::uint32_t k = 0; k < samples; ++k) {
     const Vec3 x = state.tree.sample(cell, r2_sequence(k, shift)).position;
+    if (is_buried(state, x, n, hash(cell.value, k, stream, 17))) continue;
+    count += 1.f;
     Rgb e = punctual_irradiance(*state.world, x, n) +
             sky_irradiance(*state.world, x, n, kSkyRays, random_shift(hash(cell.value, k, stream)));
-    result.outer += e / static_cast<float>(samples);
+    result.outer += e;
     if (emitters)
       e += emitters->irradiance(x, n, kCellDirectLight,
                                 random_shift(hash(cell.value, k, stream, 13)));
-    result.mean += e / static_cast<float>(samples);
+    result.mean += e;
     sum += average(e);
     squares += average(e) * average(e);
   }
-  const auto count = static_cast<float>(samples);
-  if (samples > 1)
+  if (count == 0.f) return result;
+  result.mean /= count;
+  result.outer /= count;
+  if (count > 1.f)
     result.deviation = std::sqrt(std::max(0.f, (squares - sum * sum / count) / (count - 1.f)));
   return result;
 }
@@ -71,7 +76,7 @@ void evaluate_material(SolverState& state, ElementId cell) {
   Rgb reflectance(0.f), emission(0.f);
   for (std::uint32_t k = 0; k < samples; ++k) {
     const CellPoint p = tree.sample(cell, r2_sequence(k));
-    const Vec2 b = barycentric_of(g, p);
+    const Vec2 b = g.barycentric(p.triangle, p.position);
     const float opacity = opacity_at(scene, g, p.triangle, b);
     reflectance += opacity * reflectance_at(scene, g, p.triangle, b);
     emission += opacity * emission_at(scene, g, p.triangle, b);
@@ -93,6 +98,7 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   if (!state.outer_light.empty()) state.outer_light.resize(n);
   state.irradiance.resize(n);
   state.radiosity.resize(n);
+  state.tolerance.resize(n);
   parallel_for(split_cells.size(), 64, [&](std::size_t i) {
     const ElementId parent = split_cells[i];
     for (const ElementId child : state.tree[parent].children()) {
@@ -100,6 +106,7 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
       state.given_light[child] = state.given_light[parent];
       if (!state.outer_light.empty()) state.outer_light[child] = state.outer_light[parent];
       state.irradiance[child] = state.irradiance[parent];
+      state.tolerance[child] = state.tolerance[parent];
       state.radiosity[child] =
           state.exitance[child] + state.reflectance[child] * state.irradiance[child];
     }
@@ -124,7 +131,7 @@ void update_given_light(SolverState& state, float irradiance_threshold,
       if (state.tree.cell_size(e) > state.options.feature_size) {
         const GivenLight pilot = sample_given_light(state, e, kPilot, emitters);
         const float error = pilot.deviation * std::sqrt(state.tree[e].area / scene_area);
-        uneven[i] = error > irradiance_threshold;
+        uneven[i] = error > state.tolerance[e] * irradiance_threshold;
         if (uneven[i]) return;
       }
       const GivenLight light = sample_given_light(state, e, kKept, emitters);

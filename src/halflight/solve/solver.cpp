@@ -20,6 +20,7 @@ constexpr float kThresholdPerError = 0.02f;
 constexpr float kThresholdRatio = 4.f;  // between passes
 constexpr float kBlindCells = 8.f;      // RefineOptions::largest_blind_cell in feature sizes
 constexpr float kClusterSizes = 1.f;    // SampledLinkOptions::largest_cluster in feature sizes
+constexpr float kLeastTolerance = 0.15f;
 constexpr float kSweepTolerance = 2e-4f;
 constexpr int kMostSweeps = 60;
 
@@ -39,13 +40,34 @@ float first_guess_of_irradiance(const SolverState& state) {
   return static_cast<float>(power) / std::max(state.tree[state.tree.root()].area, 1e-30f);
 }
 
+// Errors count by the scene's mean irradiance, and a little by the receiver's own: an error that
+// is nothing beside the lit part of the scene may be all that is seen in a dim room.
+void update_tolerance(SolverState& state, float mean) {
+  const ElementTree& tree = state.tree;
+  for (std::size_t i = tree.size(); i-- > 0;) {
+    const ElementId e(i);
+    if (tree[e].is_leaf()) {
+      const float share = tree[e].is_cluster() ? 1.f : average(state.irradiance[e]) / mean;
+      state.tolerance[e] = std::clamp(std::sqrt(share), kLeastTolerance, 1.f);
+      continue;
+    }
+    float sum = 0.f, area = 0.f;
+    for (const ElementId child : tree[e].children()) {
+      sum += tree[child].area * state.tolerance[child];
+      area += tree[child].area;
+    }
+    state.tolerance[e] = area > 0.f ? sum / area : 1.f;
+  }
+}
+
 // Moves out of the table what the present radiosities no longer justify.
 std::vector<ElementPair> take_failing_links(SolverState& state, float threshold,
                                             std::vector<ReceiverLink>& kept) {
   std::vector<ElementPair> failing;
   for (const ReceiverLink& l : state.links.release()) {
     const bool awakened = !l.link.sampled() && average(state.radiosity[l.link.source]) > 0.f;
-    if (awakened || weighted_error(state.tree, l.receiver, l.link, state.radiosity) > threshold)
+    if (awakened || weighted_error(state.tree, l.receiver, l.link, state.radiosity) >
+                        state.tolerance[l.receiver] * threshold)
       failing.push_back({l.receiver, l.link.source});
     else
       kept.push_back(l);
@@ -72,12 +94,10 @@ SolverState make_state(const std::shared_ptr<const World>& world, const SolveOpt
   std::vector<Bounds3f> boxes(surfaces->surfaces.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = (*surfaces)[SurfaceId(i)].box;
   const auto live = find_live_sides(world->scene, world->geometry, *surfaces, world->rays);
-  SolverState state{
-      world,   surfaces, ElementTree(world->geometry, *surfaces, build_size_grid(boxes), live),
-      options, {},       {},
-      {},      {},       {},
-      {},      false,    {},
-      {},      {},       {}};
+  SolverState state{.world = world,
+                    .surfaces = surfaces,
+                    .tree = ElementTree(world->geometry, *surfaces, build_size_grid(boxes), live),
+                    .options = options};
   if (!(state.options.feature_size > 0.f))
     state.options.feature_size = world->geometry.bounds.diagonal() / 200.f;
 
@@ -89,6 +109,7 @@ SolverState make_state(const std::shared_ptr<const World>& world, const SolveOpt
   state.given_light_known.resize(n, 0);
   if (has_outer_light(*world)) state.outer_light.resize(n, Rgb(0.f));
   state.irradiance.resize(n, Rgb(0.f));
+  state.tolerance.resize(n, 1.f);
   state.radiosity.resize(n, Rgb(0.f));
   parallel_for(n, 256, [&](std::size_t i) {
     if (!state.tree[ElementId(i)].is_cluster()) evaluate_material(state, ElementId(i));
@@ -104,12 +125,14 @@ void advance(SolverState& state, const Progress& progress) {
     progress.report("solve", (pass + share_of_pass) / std::max(1, state.options.passes));
   };
   report(0.0);
+  const std::uint64_t rays_before = state.world->rays.ray_total();
   PassRecord record;
   const float mean = pass == 0 ? first_guess_of_irradiance(state) : mean_irradiance(state);
   record.irradiance_threshold =
       kThresholdPerError * state.options.error * mean *
       std::pow(kThresholdRatio, static_cast<float>(std::max(0, state.options.passes - 1 - pass)));
 
+  if (pass > 0) update_tolerance(state, mean);
   update_given_light(state, record.irradiance_threshold, nullptr);
   if (pass == 0) pull(state);
 
@@ -126,9 +149,9 @@ void advance(SolverState& state, const Progress& progress) {
   refine_options.most_links = state.options.most_links;
   RefineCounts counts;
   refine(
-      state.tree, state.world->rays, state.radiosity, state.opacity, std::move(pairs),
-      refine_options, [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress,
-      links, counts);
+      state.tree, state.world->rays, state.radiosity, state.opacity, state.tolerance,
+      std::move(pairs), refine_options,
+      [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress, links, counts);
   update_given_light(state, record.irradiance_threshold, nullptr);
   if (state.options.links == LinkMaker::sampled && pass + 1 == state.options.passes)
     links = replace_by_sampled_links(state, record.irradiance_threshold);
@@ -141,7 +164,7 @@ void advance(SolverState& state, const Progress& progress) {
   record.links = state.links.size();
   record.elements = state.tree.size();
   record.pairs = counts.pairs;
-  record.rays += counts.rays;
+  record.rays = state.world->rays.ray_total() - rays_before;
   state.history.push_back(record);
   report(1.0);
 }

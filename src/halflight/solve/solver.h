@@ -44,19 +44,21 @@ struct SolverState {
   ElementTree tree;
   SolveOptions options;  // resolved: no zeros that stand for defaults
 
-  IdVector<ElementId, float> opacity;    // of cells: share of the light that they stop
-  IdVector<ElementId, Rgb> reflectance;  // of cells, of all light that falls on them
-  IdVector<ElementId, Rgb> exitance;     // pi L of cells, times their opacity
+  IdVector<ElementId, float> opacity{};    // of cells: share of the light that they stop
+  IdVector<ElementId, Rgb> reflectance{};  // of cells, of all light that falls on them
+  IdVector<ElementId, Rgb> exitance{};     // pi L of cells, times their opacity
   // Irradiance of leaf cells that links do not carry: by punctual lights and the sky, and with
   // sampled links by emitting surfaces too.
-  IdVector<ElementId, Rgb> given_light;
-  IdVector<ElementId, std::uint8_t> given_light_known;
-  IdVector<ElementId, Rgb> outer_light;  // its part by punctual lights and the sky; empty: none
-  bool emission_is_given = false;        // links carry reflected light only
-  IdVector<ElementId, Rgb> irradiance;   // E of cells, from all links above and at them
-  IdVector<ElementId, Rgb> radiosity;    // B = rho E + pi L, mean over the element's area
-  LinkTable links;
-  std::vector<PassRecord> history;
+  IdVector<ElementId, Rgb> given_light{};
+  IdVector<ElementId, std::uint8_t> given_light_known{};
+  IdVector<ElementId, Rgb> outer_light{};  // its part by punctual lights and the sky; empty: none
+  bool emission_is_given = false;          // links carry reflected light only
+  IdVector<ElementId, Rgb> irradiance{};   // E of cells, from all links above and at them
+  // By what the threshold on errors is multiplied where an element receives: 1, less in the dark.
+  IdVector<ElementId, float> tolerance{};
+  IdVector<ElementId, Rgb> radiosity{};  // B = rho E + pi L, mean over the element's area
+  LinkTable links{};
+  std::vector<PassRecord> history{};
 
   bool done() const { return static_cast<int>(history.size()) >= options.passes; }
 };

@@ -25,15 +25,15 @@ constexpr std::uint64_t kPilot = 1, kFinal = 2;
 struct Verdict {
   enum class Kind : std::uint8_t { drop, accept, split_receiver, split_source, split_both };
   Kind kind = Kind::drop;
-  std::uint8_t rays = 0;
   Link link;
 };
 
 // Judges pairs: the oracle of the refinement.
 class Oracle {
  public:
-  Oracle(const TransferScene& scene, const RefineOptions& options, bool accept_all)
-      : scene_(scene), options_(options), accept_all_(accept_all) {
+  Oracle(const TransferScene& scene, const RefineOptions& options,
+         const IdVector<ElementId, float>& tolerance, bool accept_all)
+      : scene_(scene), options_(options), tolerance_(tolerance), accept_all_(accept_all) {
     scene_area_ = scene.tree[scene.tree.root()].area;
   }
 
@@ -47,21 +47,21 @@ class Oracle {
       dark.source = s;
       dark.weight = Link::kUnsampled;
       dark.error = bounds.largest_weight;
-      return {Verdict::Kind::accept, 0, dark};
+      return {Verdict::Kind::accept, dark};
     }
     const float scale = radiosity * std::sqrt(tree[r].area / scene_area_);
     const Verdict::Kind finer = accept_all_ ? Verdict::Kind::accept : choose_split(r, s);
     const bool can_refine = finer != Verdict::Kind::accept;
-    const float threshold = options_.irradiance_threshold;
+    const float threshold = tolerance_[r] * options_.irradiance_threshold;
 
     const float strongest = scale * bounds.largest_weight;
     if (strongest <= kNegligible * threshold) return accept(r, s, 1, bounds);
     const bool clusters = tree[r].is_cluster() || tree[s].is_cluster();
     if (bounds.touching && clusters)
-      return can_refine ? Verdict{finer, 0, {}} : accept(r, s, kFinalSamples, bounds);
+      return can_refine ? Verdict{finer, {}} : accept(r, s, kFinalSamples, bounds);
     if (can_refine && strongest * bounds.kernel_variation > kHopeless * threshold &&
         bounds.kernel_variation >= 0.5f && clusters)
-      return {finer, 0, {}};
+      return {finer, {}};
     if (!can_refine) return accept(r, s, kFinalSamples, bounds);
 
     TransferEstimate pilot = estimate_transfer(scene_, r, s, kSamples, kPilot);
@@ -71,10 +71,9 @@ class Oracle {
     // What n samples missed may still be one part in n + 1 (rule of succession).
     const float error = std::max(pilot.deviation, pilot.unoccluded / (kBlindSamples + 1)) +
                         kUnseenVariation * bounds.kernel_variation * pilot.weight;
-    if (scale * error > threshold) return {finer, kSamples, {}};
+    if (scale * error > threshold) return {finer, {}};
     Verdict verdict = accept(r, s, kKeptSamples, bounds);
     verdict.link.error = error;
-    verdict.rays += kSamples;
     return verdict;
   }
 
@@ -89,7 +88,6 @@ class Oracle {
                                    : estimate_transfer(scene_, r, s, samples, kFinal);
     Verdict verdict;
     verdict.kind = Verdict::Kind::accept;
-    verdict.rays = static_cast<std::uint8_t>(samples);
     verdict.link.source = s;
     verdict.link.weight = std::min(t.weight, bounds.largest_weight);
     verdict.link.error = bounds.largest_weight;
@@ -118,6 +116,7 @@ class Oracle {
 
   const TransferScene& scene_;
   const RefineOptions& options_;
+  const IdVector<ElementId, float>& tolerance_;
   bool accept_all_;
   float scene_area_;
 };
@@ -155,8 +154,9 @@ void append_finer_pairs(const ElementTree& tree, const ElementPair& pair, Verdic
 }  // namespace
 
 void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, Rgb>& radiosity,
-            const IdVector<ElementId, float>& opacity, std::vector<ElementPair> pairs,
-            const RefineOptions& options, const SplitListener& on_split, const Progress& progress,
+            const IdVector<ElementId, float>& opacity, const IdVector<ElementId, float>& tolerance,
+            std::vector<ElementPair> pairs, const RefineOptions& options,
+            const SplitListener& on_split, const Progress& progress,
             std::vector<ReceiverLink>& links, RefineCounts& counts) {
   std::vector<ElementPair> batch;
   std::vector<Verdict> verdicts;
@@ -167,7 +167,7 @@ void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, R
     const bool accept_all = links.size() > options.most_links || progress.cancelled();
 
     const TransferScene scene{tree, rays, radiosity, opacity};
-    const Oracle oracle(scene, options, accept_all);
+    const Oracle oracle(scene, options, tolerance, accept_all);
     verdicts.assign(n, {});
     parallel_for(n, 64, [&](std::size_t i) {
       verdicts[i] = oracle.judge(batch[i].receiver, batch[i].source);
@@ -176,7 +176,6 @@ void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, R
     split_cells(tree, batch, verdicts, on_split);
     for (std::size_t i = 0; i < n; ++i) {
       const Verdict& v = verdicts[i];
-      counts.rays += v.rays;
       if (v.kind == Verdict::Kind::accept) {
         if (v.link.weight != 0.f || v.link.error > 0.f)
           links.push_back({batch[i].receiver, v.link});

@@ -15,8 +15,9 @@ namespace halflight {
 
 struct RefineOptions {
   // A link of irradiance error e on a receiver of area A is accepted when
-  // e * sqrt(A / scene area) <= irradiance_threshold (W/m2): independent errors add in the square,
-  // weighted by the area they fall on, so this equalises what links add to the RMS error.
+  // e * sqrt(A / scene area) <= tolerance * irradiance_threshold (W/m2), with the receiver's own
+  // tolerance: independent errors add in the square, weighted by the area they fall on, so this
+  // equalises what links add to the RMS error.
   float irradiance_threshold = 0.f;
   // Cells are not split below this size: half the feature size (the feature gate).
   float smallest_cell = 0.f;
@@ -27,7 +28,6 @@ struct RefineOptions {
 
 struct RefineCounts {
   std::uint64_t pairs = 0;           // visited
-  std::uint64_t rays = 0;            // exact visibility
   std::uint64_t accepted_early = 0;  // because most_links was reached
 };
 
@@ -41,8 +41,9 @@ using SplitListener = std::function<void(const std::vector<ElementId>& split_cel
 // Processes pairs until none is left and appends the links in a fixed order. Pairs whose source is
 // dark are kept as unsampled links. Deterministic for any thread count.
 void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, Rgb>& radiosity,
-            const IdVector<ElementId, float>& opacity, std::vector<ElementPair> pairs,
-            const RefineOptions& options, const SplitListener& on_split, const Progress& progress,
+            const IdVector<ElementId, float>& opacity, const IdVector<ElementId, float>& tolerance,
+            std::vector<ElementPair> pairs, const RefineOptions& options,
+            const SplitListener& on_split, const Progress& progress,
             std::vector<ReceiverLink>& links, RefineCounts& counts);
 
 // Error of a link in irradiance at its receiver, in the units of irradiance_threshold.
