@@ -136,5 +136,39 @@ TEST(LiveSides, CrateWithoutALidIsLitInside) {
   EXPECT_EQ(room.live_sides(kCrate).inside, 5);
 }
 
+// Five walls of a crate that stands on a floor of its own, `gap` above it.
+int live_insides_of_a_lid(float gap) {
+  testing::QuadScene quads;
+  const MaterialId grey = quads.material(0.5f), lamp = quads.material(0.f, 10.f);
+  quads.box({0, 0, 0}, {4, 3, 4}, grey, true);
+  quads.quad({1.5f, 2.9f, 1.5f}, {1, 0, 0}, {0, 0, 1}, lamp);
+  MeshParts lid;
+  append_box(lid[grey], {{1, gap, 1}, {1.5f, 0.5f, 1.5f}});
+  Primitive& p = lid[grey];
+  // Without the bottom: its triangles are those whose corners all lie at the gap's height.
+  std::erase_if(p.triangles, [&](const auto& t) {
+    return std::all_of(t.begin(), t.end(), [&](auto v) { return p.positions[v].y == gap; });
+  });
+  add_node(quads.scene, "lid", add_mesh(quads.scene, "lid", std::move(lid)));
+  const World world(quads.scene);
+  const Surfaces surfaces = build_surfaces(world.geometry);
+  const auto live = find_live_sides(world.scene, world.geometry, surfaces, world.rays);
+  int insides = 0;
+  for (std::size_t i = 0; i < surfaces.surfaces.size(); ++i) {
+    const SurfaceId s(i);
+    if (surfaces[s].box.longest_side() < 0.9f && surfaces[s].box.upper.y < 1.f)
+      insides += live[side_of(s, true)] != 0;
+  }
+  return insides;
+}
+
+TEST(LiveSides, InsideOfACrateWithoutABottomIsSealedByTheFloor) {
+  EXPECT_EQ(live_insides_of_a_lid(0.f), 0);
+}
+
+TEST(LiveSides, InsideOfACrateThatHangsOpenAboveTheFloorLives) {
+  EXPECT_EQ(live_insides_of_a_lid(0.1f), 5);
+}
+
 }  // namespace
 }  // namespace halflight

@@ -1,0 +1,71 @@
+// Irradiance continued linearly over cells: nearer to the truth than constants, same means.
+#include "halflight/output/smooth_irradiance.h"
+
+#include <gtest/gtest.h>
+
+#include "halflight/rays/sampling.h"
+#include "quad_scene.h"
+#include "solved_scene.h"
+
+namespace halflight {
+namespace {
+
+// A floor of which every cell holds the value of a given function at its middle.
+template <class F>
+SolverState floor_with(const F& light_at) {
+  testing::QuadScene quads;
+  quads.quad({0, 0, 4}, {4, 0, 0}, {0, 0, -4}, quads.material(0.5f));
+  quads.quad({0, 3, 0}, {4, 0, 0}, {0, 0, 4}, quads.material(0.f, 1.f));
+  SolverState state = make_state(make_world(quads.scene), {.feature_size = 0.1f});
+  ElementTree& tree = state.tree;
+  for (std::size_t i = 0; i < tree.size() && tree.size() < 500; ++i)
+    if (!tree[ElementId(i)].is_cluster() && tree[ElementId(i)].is_leaf()) tree.split(ElementId(i));
+  state.irradiance.resize(tree.size(), Rgb(0.f));
+  for (std::size_t i = 0; i < tree.size(); ++i)
+    state.irradiance[ElementId(i)] = Rgb(light_at(tree[ElementId(i)].center()));
+  return state;
+}
+
+template <class F>
+void for_points_of_the_floor(const SolverState& state, const F& visit) {
+  const ElementTree& tree = state.tree;
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    const ElementId leaf(i);
+    if (tree[leaf].is_cluster() || !tree[leaf].is_leaf() || tree[leaf].center().y > 1.f) continue;
+    for (std::uint32_t k = 0; k < 16; ++k) visit(leaf, tree.sample(leaf, r2_sequence(k)).position);
+  }
+}
+
+TEST(SmoothIrradiance, ReproducesALinearOne) {
+  const auto light = [](const Vec3& p) { return 3.f + 0.5f * p.x - 0.25f * p.z; };
+  const SolverState state = floor_with(light);
+  const SmoothIrradiance smooth(state);
+  for_points_of_the_floor(state, [&](ElementId leaf, const Vec3& p) {
+    EXPECT_NEAR(smooth.at(leaf, p).g, light(p), 1e-3f);
+  });
+}
+
+TEST(SmoothIrradiance, ComesNearerToACurvedOneThanConstants) {
+  const auto light = [](const Vec3& p) { return 2.f + std::sin(2.f * p.x) * std::cos(p.z); };
+  const SolverState state = floor_with(light);
+  const SmoothIrradiance smooth(state);
+  double of_constants = 0.0, of_smooth = 0.0;
+  for_points_of_the_floor(state, [&](ElementId leaf, const Vec3& p) {
+    of_constants += std::abs(state.irradiance[leaf].g - light(p));
+    of_smooth += std::abs(smooth.at(leaf, p).g - light(p));
+  });
+  EXPECT_LT(of_smooth, 0.75 * of_constants);
+}
+
+TEST(SmoothIrradiance, MakesNoOvershootAtAnEdge) {
+  const auto light = [](const Vec3& p) { return p.x < 2.f ? 1.f : 9.f; };
+  const SolverState state = floor_with(light);
+  const SmoothIrradiance smooth(state);
+  for_points_of_the_floor(state, [&](ElementId leaf, const Vec3& p) {
+    EXPECT_GE(smooth.at(leaf, p).g, 0.99f);
+    EXPECT_LE(smooth.at(leaf, p).g, 9.01f);
+  });
+}
+
+}  // namespace
+}  // namespace halflight
