@@ -145,6 +145,7 @@ void advance(SolverState& state, const Progress& progress) {
   RefineOptions refine_options;
   refine_options.irradiance_threshold = record.irradiance_threshold;
   refine_options.smallest_cell = 0.5f * state.options.feature_size;
+  refine_options.smallest_cluster = kClusterSizes * state.options.feature_size;
   refine_options.largest_blind_cell = kBlindCells * state.options.feature_size;
   refine_options.most_links = state.options.most_links;
   RefineCounts counts;

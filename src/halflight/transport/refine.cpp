@@ -101,8 +101,9 @@ class Oracle {
 
   bool can_split(ElementId e) const {
     const Element& element = scene_.tree[e];
-    return !element.is_leaf() ||
-           (!element.is_cluster() && scene_.tree.cell_size(e) > 2.f * options_.smallest_cell);
+    if (element.is_cluster())
+      return !element.is_leaf() && element.diameter() > options_.smallest_cluster;
+    return !element.is_leaf() || scene_.tree.cell_size(e) > 2.f * options_.smallest_cell;
   }
 
   // The larger end first; `accept` when neither end can be split.

@@ -21,6 +21,9 @@ struct RefineOptions {
   float irradiance_threshold = 0.f;
   // Cells are not split below this size: half the feature size (the feature gate).
   float smallest_cell = 0.f;
+  // Clusters are not opened below this diameter: what is inside is smaller than any shadow asked for,
+  // and receives and sends as one.
+  float smallest_cluster = 0.f;
   // Cells larger than this are split whatever their samples say, as samples can miss a shadow.
   float largest_blind_cell = kInfinity;
   std::size_t most_links = 40'000'000;  // beyond it pairs are accepted as they are, and counted
