@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
-#include <tuple>
 
 #include "halflight/base/parallel.h"
+#include "halflight/hierarchy/bodies.h"
 #include "halflight/rays/sampling.h"
 
 namespace halflight {
@@ -19,65 +18,22 @@ constexpr std::uint32_t kRaysPerLargeSide = 64;
 constexpr std::uint32_t kRaysPerEmitter = 32;  // of each side of each emitting triangle
 constexpr float kLargeSurface = 1e-3f;         // share of the largest surface's area
 
-using ComponentId = Id<struct ComponentTag>;
-
-struct Components {
-  IdVector<TriangleId, ComponentId> of_triangle;
-  std::vector<std::uint8_t> closed;       // every edge joins two triangles, consistently wound
-  std::vector<std::uint8_t> transparent;  // some material lets light through
-  std::vector<std::uint8_t> emits_back;   // some double-sided emitter
-  std::vector<std::vector<TriangleId>> members;
+// What lets light into a closed body, or makes it inside.
+struct Openings {
+  IdVector<BodyId, std::uint8_t> transparent;  // some material lets light through
+  IdVector<BodyId, std::uint8_t> emits_back;   // some double-sided emitter
 };
 
-Components find_components(const Scene& scene, const Geometry& g) {
-  const auto welded = weld_positions(g);
-  std::vector<std::uint32_t> parent(g.positions.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto find = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  std::vector<std::tuple<std::uint32_t, std::uint32_t, bool, std::uint32_t>> edges;
-  edges.reserve(3 * g.triangles.size());
-  for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
-    const auto& v = g.triangles[TriangleId(t)];
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = welded[v[k]].value, b = welded[v[(k + 1) % 3]].value;
-      parent[std::max(find(a), find(b))] = std::min(find(a), find(b));
-      edges.emplace_back(std::min(a, b), std::max(a, b), a < b, t);
-    }
-  }
-
-  Components c;
-  c.of_triangle.resize(g.triangles.size());
-  std::vector<std::uint32_t> number(g.positions.size(), ComponentId::kInvalid);
-  for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
-    const std::uint32_t root = find(welded[g.triangles[TriangleId(t)][0]].value);
-    if (number[root] == ComponentId::kInvalid) {
-      number[root] = static_cast<std::uint32_t>(c.members.size());
-      c.members.emplace_back();
-    }
-    c.of_triangle[TriangleId(t)] = ComponentId(number[root]);
-    c.members[number[root]].push_back(TriangleId(t));
-  }
-  c.closed.assign(c.members.size(), 1);
-  c.transparent.assign(c.members.size(), 0);
-  c.emits_back.assign(c.members.size(), 0);
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i < edges.size();) {
-    const auto [low, high, first_forward, t] = edges[i];
-    std::size_t forward = 0, backward = 0;
-    for (; i < edges.size() && std::get<0>(edges[i]) == low && std::get<1>(edges[i]) == high; ++i)
-      ++(std::get<2>(edges[i]) ? forward : backward);
-    if (forward != 1 || backward != 1) c.closed[c.of_triangle[TriangleId(t)].value] = 0;
-  }
+Openings find_openings(const Scene& scene, const Geometry& g, const Bodies& bodies) {
+  const std::size_t n = bodies.members.size();
+  Openings openings{IdVector<BodyId, std::uint8_t>(n, 0), IdVector<BodyId, std::uint8_t>(n, 0)};
   for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
     const Material& m = scene.materials[g.materials[TriangleId(t)]];
-    const std::uint32_t id = c.of_triangle[TriangleId(t)].value;
-    if (may_be_transparent(m)) c.transparent[id] = 1;
-    if (m.emits() && m.double_sided) c.emits_back[id] = 1;
+    const BodyId id = bodies.of_triangle[TriangleId(t)];
+    if (may_be_transparent(m)) openings.transparent[id] = 1;
+    if (m.emits() && m.double_sided) openings.emits_back[id] = 1;
   }
-  return c;
+  return openings;
 }
 
 Vec3 direction_about(const Vec3& n, std::uint32_t i, std::uint64_t seed) {
@@ -85,9 +41,9 @@ Vec3 direction_about(const Vec3& n, std::uint32_t i, std::uint64_t seed) {
 }
 
 // Every ray that leaves this side of the closed body meets the same side of the same body again.
-bool sees_only_itself(const Geometry& g, const RayScene& rays, const Components& components,
-                      ComponentId id, bool back) {
-  const auto& members = components.members[id.value];
+bool sees_only_itself(const Geometry& g, const RayScene& rays, const Bodies& bodies, BodyId id,
+                      bool back) {
+  const auto& members = bodies.members[id];
   for (std::uint32_t i = 0; i < kRaysPerBody; ++i) {
     const std::uint64_t seed = hash(id.value, i, back);
     const TriangleId t = members[seed % members.size()];
@@ -95,7 +51,7 @@ bool sees_only_itself(const Geometry& g, const RayScene& rays, const Components&
     const Vec3 n = glm::normalize(g.scaled_normal(t)) * (back ? -1.f : 1.f);
     const Vec3 p = rays.lift((a + b + c) / 3.f, n);
     const auto hit = rays.closest_hit(p, direction_about(n, i, id.value), kInfinity, seed);
-    if (!hit || components.of_triangle[hit->triangle] != id || hit->front == back) return false;
+    if (!hit || bodies.of_triangle[hit->triangle] != id || hit->front == back) return false;
   }
   return true;
 }
@@ -104,8 +60,8 @@ bool sees_only_itself(const Geometry& g, const RayScene& rays, const Components&
 // of things that have no bottom and stand on the floor, and of those whose bottom lies in it. Only
 // small bodies are asked: a dark room behind a door left ajar must not be taken for one.
 bool is_sealed_off(const Scene& scene, const Geometry& g, const RayScene& rays,
-                   const Components& components, ComponentId id, bool back) {
-  const auto& members = components.members[id.value];
+                   const Bodies& bodies, BodyId id, bool back) {
+  const auto& members = bodies.members[id];
   Bounds3f box;
   for (const TriangleId t : members)
     for (const Vec3& corner : g.corners(t)) box.extend(corner);
@@ -176,13 +132,13 @@ struct LitByEmission {
 };
 
 LitByEmission find_lit_by_emission(const Scene& scene, const Geometry& g, const Surfaces& surfaces,
-                                   const RayScene& rays, const Components& components) {
+                                   const RayScene& rays, const Bodies& bodies) {
   LitByEmission lit{std::vector<std::atomic<std::uint8_t>>(2 * surfaces.surfaces.size()),
-                    std::vector<std::atomic<std::uint8_t>>(2 * components.members.size())};
+                    std::vector<std::atomic<std::uint8_t>>(2 * bodies.members.size())};
   follow_emission(scene, g, surfaces, rays, [&](SideId side) {
     const TriangleId t = surfaces.triangles[surfaces[side].first_triangle];
     lit.sides[side.value].store(1, std::memory_order_relaxed);
-    lit.bodies[2 * components.of_triangle[t].value + (is_back(side) ? 1 : 0)].store(
+    lit.bodies[2 * bodies.of_triangle[t].value + (is_back(side) ? 1 : 0)].store(
         1, std::memory_order_relaxed);
   });
   return lit;
@@ -192,23 +148,23 @@ LitByEmission find_lit_by_emission(const Scene& scene, const Geometry& g, const 
 
 IdVector<SideId, std::uint8_t> find_live_sides(const Scene& scene, const Geometry& g,
                                                const Surfaces& surfaces, const RayScene& rays) {
-  const Components components = find_components(scene, g);
-  const LitByEmission lit = find_lit_by_emission(scene, g, surfaces, rays, components);
-  const std::size_t bodies = components.members.size();
-  std::vector<std::uint8_t> dead(2 * bodies, 0);
-  parallel_for(2 * bodies, 8, [&](std::size_t i) {
-    const ComponentId id(i / 2);
+  const Bodies bodies = find_bodies(g);
+  const Openings openings = find_openings(scene, g, bodies);
+  const LitByEmission lit = find_lit_by_emission(scene, g, surfaces, rays, bodies);
+  std::vector<std::uint8_t> dead(2 * bodies.members.size(), 0);
+  parallel_for(dead.size(), 8, [&](std::size_t i) {
+    const BodyId id(i / 2);
     const bool back = i % 2 != 0;
-    if (components.transparent[id.value] || lit.bodies[i]) return;
+    if (openings.transparent[id] || lit.bodies[i]) return;
     const bool lit_by_itself =
-        std::any_of(components.members[id.value].begin(), components.members[id.value].end(),
+        std::any_of(bodies.members[id].begin(), bodies.members[id].end(),
                     [&](TriangleId t) { return scene.materials[g.materials[t]].emits(); }) &&
-        (!back || components.emits_back[id.value]);
+        (!back || openings.emits_back[id]);
     if (lit_by_itself) return;
     for (const PunctualLight& light : g.lights)
       if (light.kind != Light::Kind::directional) return;
-    dead[i] = (components.closed[id.value] && sees_only_itself(g, rays, components, id, back)) ||
-              is_sealed_off(scene, g, rays, components, id, back);
+    dead[i] = (bodies.closed[id] && sees_only_itself(g, rays, bodies, id, back)) ||
+              is_sealed_off(scene, g, rays, bodies, id, back);
   });
 
   const bool lit_from_outside = max_component(scene.sky) > 0.f || !g.lights.empty();
@@ -219,7 +175,7 @@ IdVector<SideId, std::uint8_t> find_live_sides(const Scene& scene, const Geometr
     const SideId side(i);
     const Surface& s = surfaces[side];
     const TriangleId t = surfaces.triangles[s.first_triangle];
-    const ComponentId body = components.of_triangle[t];
+    const BodyId body = bodies.of_triangle[t];
     const Material& m = scene.materials[s.material];
     if (lit.sides[i] || (m.emits() && (!is_back(side) || m.double_sided))) return;
     if (dead[2 * body.value + (is_back(side) ? 1 : 0)])
