@@ -1,0 +1,15 @@
+// Builds the nodes of the multi-resolution tree over a cluster tree.
+#pragma once
+
+#include "halflight/hierarchy/cluster_tree.h"
+#include "halflight/visibility/multires_nodes.h"
+
+namespace halflight {
+
+// Inner nodes follow the clusters. Clusters with few members are merged into the node above while
+// that has room; more than eight members get nodes between by a binned surface area heuristic
+// (Wald 2007), and so do surfaces of many triangles.
+MultiresNodes build_multires_nodes(const Scene& scene, const Geometry& geometry,
+                                   const Surfaces& surfaces, const ClusterTree& clusters);
+
+}  // namespace halflight

@@ -1,0 +1,41 @@
+#include "halflight/visibility/visibility.h"
+
+namespace halflight {
+
+Visibility::Visibility(const World& world, const Surfaces& surfaces, const ClusterTree& clusters,
+                       VisibilityMode mode, const MultiresOptions& options)
+    : world_(&world), mode_(mode) {
+  if (mode != VisibilityMode::exact)
+    tree_ =
+        std::make_unique<MultiresTree>(world.scene, world.geometry, surfaces, clusters, options);
+}
+
+float Visibility::through_tree(const VisibilityRay& ray, const StopRule& rule) const {
+  return mode_ == VisibilityMode::average ? tree_->average(ray, rule) : tree_->multires(ray, rule);
+}
+
+float Visibility::transmittance(const RayEnds& ends) const {
+  if (exact(ends.feature_size)) return world_->rays.transmittance(ends.receiver, ends.emitter);
+  return through_tree({ends.receiver, ends.emitter - ends.receiver, 1.f},
+                      StopRule::between(ends.feature_size, ends.emitter_size));
+}
+
+float Visibility::transmittance_to_sky(const Vec3& receiver, const Vec3& direction,
+                                       float feature_size, float angular_diameter) const {
+  if (exact(feature_size)) return world_->rays.transmittance_to_sky(receiver, direction);
+  return through_tree({receiver, direction, kInfinity},
+                      StopRule::widening(feature_size, angular_diameter));
+}
+
+std::optional<MediumHit> Visibility::closest_hit(const Vec3& receiver, const Vec3& direction,
+                                                 float max_distance, float feature_size,
+                                                 float spread, std::uint64_t seed) const {
+  if (!exact(feature_size))
+    return tree_->closest_hit({receiver, direction, max_distance},
+                              StopRule::widening(feature_size, spread), seed);
+  const auto hit = world_->rays.closest_hit(receiver, direction, max_distance, seed);
+  if (!hit) return std::nullopt;
+  return MediumHit{*hit, 0, hit->distance};
+}
+
+}  // namespace halflight
