@@ -7,6 +7,7 @@
 #include "clustered_world.h"
 #include "halflight/base/parallel.h"
 #include "halflight/scene/procedural/loose_triangles.h"
+#include "halflight/visibility/multires_build.h"
 #include "halflight/visibility/visibility.h"
 
 namespace halflight {
@@ -73,12 +74,7 @@ class RandomTrees : public ::testing::TestWithParam<int> {
     const int kind = GetParam() % 3;
     if (kind == 1)
       world_->clusters = random_clusters(world_->surfaces.surfaces.size(), 7u * GetParam());
-    if (kind == 2) {  // one cluster of everything
-      world_->clusters = {};
-      world_->clusters.clusters.resize(1);
-      for (std::size_t s = 0; s < world_->surfaces.surfaces.size(); ++s)
-        world_->clusters.clusters[0].surfaces.emplace_back(s);
-    }
+    if (kind == 2) world_->clusters = one_cluster(world_->surfaces);
   }
   ShapeScene shapes_;
   std::unique_ptr<ClusteredWorld> world_;
@@ -229,6 +225,7 @@ TEST(Criterion, UmbraOfASquareBlockerIsAsWideAsTheFormulaSays) {
 
     MultiresOptions options;
     options.receiver_clearance = 0.f;
+    options.extinction = ExtinctionRule::area;  // lets light through a square: stops can be seen
     const MultiresTree tree = make_tree(c, options);
     const Vec3 receiver(0.001f, 0.002f, 0.f), emitter(0.f, 0.f, d1 + d2);
     const auto light_through = [&](float s) {
@@ -246,7 +243,9 @@ TEST(Criterion, SunShadowsFadeWithDistance) {
   ShapeScene shapes;
   shapes.quad(Vec3(0, 0, 5.f), Vec3(0.1f, 0, 0), Vec3(0, 0.1f, 0));
   const ClusteredWorld c = testing::cluster(shapes);
-  const MultiresTree tree = make_tree(c);
+  MultiresOptions options;
+  options.extinction = ExtinctionRule::area;
+  const MultiresTree tree = make_tree(c, options);
   // Five metres below a blocker of 0.2 m its umbra is 0.2 - 5 theta wide.
   const auto light = [&](float s, float theta) {
     return tree.multires({Vec3(0.01f, 0.02f, 0.f), Vec3(0, 0, 1)}, StopRule::widening(s, theta));
@@ -313,11 +312,11 @@ TEST(MultiresTree, PathsEndAsOftenAsLightIsStopped) {
 }
 
 TEST(MultiresTree, IsTheSameForAnyNumberOfThreads) {
-  ShapeScene shapes = clutter(11, 1500);
+  ShapeScene shapes = clutter(11, 400);
   const ClusteredWorld c(shapes.scene);
   MultiresOptions options;
   options.blocker_size = BlockerSizeRule::directional;
-  options.coverage_extinction = true;
+  options.extinction = ExtinctionRule::directional_coverage;
   const MultiresTree one = make_tree(c, options), other = make_tree(c, options);
   ASSERT_EQ(one.arrays().nodes.size(), other.arrays().nodes.size());
   EXPECT_EQ(std::memcmp(one.arrays().nodes.data(), other.arrays().nodes.data(),
@@ -339,15 +338,18 @@ TEST(MultiresTree, KeepsTheMeanLightUnderAnyRuleForBlockerSizes) {
   Dice dice(12);
   for (int i = 0; i < 6000; ++i) {
     const Vec3 at = dice.point();
-    shapes.disc(at, dice.frame(), 0.02f, 6);
+    shapes.disc(at, dice.frame(), 0.015f, 6);
   }
   const ClusteredWorld c = testing::cluster(shapes);
-  for (const bool coverage : {false, true})
+  for (const auto extinction :
+       {ExtinctionRule::area, ExtinctionRule::coverage, ExtinctionRule::directional_coverage})
     for (const auto rule : {BlockerSizeRule::longest_side, BlockerSizeRule::isotropic,
                             BlockerSizeRule::directional}) {
       MultiresOptions options;
       options.blocker_size = rule;
-      options.coverage_extinction = coverage;
+      options.extinction = extinction;
+      options.smallest_picture = 0.05f;
+      options.smallest_picture = 0.05f;
       const MultiresTree tree = make_tree(c, options);
       double exact = 0.0, mean = 0.0;
       TraversalCount count;
@@ -359,9 +361,50 @@ TEST(MultiresTree, KeepsTheMeanLightUnderAnyRuleForBlockerSizes) {
         mean +=
             tree.multires({from, to - from, 1.f}, StopRule::between(0.15f, 0.15f), &count) / kRays;
       }
-      EXPECT_NEAR(mean, exact, 0.04) << static_cast<int>(rule) << coverage;
+      EXPECT_NEAR(mean, exact, 0.04) << static_cast<int>(rule) << static_cast<int>(extinction);
       EXPECT_GT(count.stops, 8000u);
     }
+}
+
+// Extinction of a cluster of clusters knows the gaps between them, that of a sheet that it has
+// none.
+TEST(MultiresTree, CoverageExtinctionKnowsGapsAndSheets) {
+  ShapeScene sheet, clumps;
+  sheet.quad(Vec3(0.f), Vec3(1, 0, 0), Vec3(0, 1, 0));
+  Dice dice(30);
+  for (int clump = 0; clump < 27; ++clump) {
+    const Vec3 corner = Vec3(clump % 3, clump / 3 % 3, clump / 9) / 3.f;
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 at = corner + 0.12f * dice.point();
+      clumps.disc(at, dice.frame(), 0.02f, 6);
+    }
+  }
+  const ClusteredWorld c = testing::cluster(clumps);
+  double exact = 0.0;
+  const auto mean_light = [&](ExtinctionRule rule) {
+    MultiresOptions options;
+    options.extinction = rule;
+    const MultiresTree tree(c.world.scene, c.world.geometry, c.surfaces, one_cluster(c.surfaces),
+                            options);
+    constexpr int kRays = 20000;
+    double mean = exact = 0.0;
+    for (std::uint64_t i = 0; i < kRays; ++i) {
+      Dice at(hash(i, 22));
+      const Vec3 middle = 0.2f + 0.5f * at.point(), way = 4.f * at.direction();
+      const Vec3 from = middle - way, to = middle + way;
+      exact += c.world.rays.transmittance(from, to) / kRays;
+      mean += tree.multires({from, to - from, 1.f}, StopRule::between(9.f, 9.f)) / kRays;
+    }
+    return mean;
+  };
+  const double by_area = mean_light(ExtinctionRule::area);
+  const double by_coverage = mean_light(ExtinctionRule::coverage);
+  EXPECT_NEAR(by_coverage, exact, 0.05);
+  EXPECT_LT(by_area, exact - 0.08);
+  const ClusteredWorld flat = testing::cluster(sheet);
+  EXPECT_LT(make_tree(flat).multires({Vec3(0.1f, 0.2f, -3.f), Vec3(0, 0, 1)},
+                                     StopRule::widening(9.f, 0.f)),
+            0.01f);
 }
 
 }  // namespace

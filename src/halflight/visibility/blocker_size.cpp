@@ -4,6 +4,7 @@
 
 #include "halflight/features/widths.h"
 #include "halflight/rays/sampling.h"
+#include "halflight/visibility/extinction.h"
 
 namespace halflight {
 namespace {
@@ -11,10 +12,7 @@ namespace {
 constexpr int kPixels = 64;
 constexpr float kLeastWidth = 3.f;      // pixels
 constexpr std::uint32_t kChords = 128;  // that extinction is fitted to; some miss the box
-constexpr int kNewtonSteps = 20;
-constexpr float kFitTolerance = 1e-3f;
 constexpr float kOpaqueShare = 0.5f;
-constexpr float kLeastLight = 1e-3f;  // mean transmittance of what covers everything
 
 // Places a direction's picture over the projection of a box.
 struct Easel {
@@ -105,30 +103,7 @@ float chord_length(const Bounds3f& box, const Vec3& p, const Vec3& direction) {
   return std::max(far - near, 0.f);
 }
 
-// Extinction whose mean transmittance over the chords is the given one. The mean of exp(-kappa l)
-// falls and is convex in kappa, and no less than exp(-kappa mean l): Newton's method from where
-// that equals the transmittance rises to the answer without ever passing it.
-float fit_extinction(std::span<const float> chords, float transmittance) {
-  if (transmittance >= 1.f || chords.empty()) return 0.f;
-  float mean = 0.f;
-  for (const float l : chords) mean += l / static_cast<float>(chords.size());
-  if (!(mean > 0.f)) return 0.f;
-  const float wanted = transmittance * static_cast<float>(chords.size());
-  float kappa = -std::log(transmittance) / mean;
-  for (int step = 0; step < kNewtonSteps; ++step) {
-    float light = 0.f, slope = 0.f;
-    for (const float l : chords) {
-      const float t = std::exp(-kappa * l);
-      light += t;
-      slope += l * t;
-    }
-    if (light <= wanted * (1.f + kFitTolerance) || !(slope > 0.f)) break;
-    kappa += (light - wanted) / slope;
-  }
-  return kappa;
-}
-
-float fit_extinction(const Easel& easel, const Bounds3f& box, const BinaryImage& inside,
+float fit_to_picture(const Easel& easel, const Bounds3f& box, const BinaryImage& inside,
                      float coverage) {
   std::vector<float> chords;
   chords.reserve(kChords);
@@ -139,7 +114,7 @@ float fit_extinction(const Easel& easel, const Bounds3f& box, const BinaryImage&
     if (inside.at(x, y))
       chords.push_back(chord_length(box, easel.from_pixel(x, y), easel.frame.normal));
   }
-  return fit_extinction(chords, std::max(1.f - coverage, kLeastLight));
+  return fit_extinction(chords, 1.f - coverage);
 }
 
 }  // namespace
@@ -190,7 +165,7 @@ ClusterPicture picture_cluster(const Scene& scene, const Geometry& g,
   if (pixels > 0)
     picture.coverage =
         std::min(1.f, static_cast<float>(blocked.count()) / static_cast<float>(pixels));
-  picture.extinction = fit_extinction(easel, box, inside, picture.coverage);
+  picture.extinction = fit_to_picture(easel, box, inside, picture.coverage);
   return picture;
 }
 

@@ -1,6 +1,8 @@
 // Extinction: how strongly a cluster seen as a medium weakens a ray (paper section 3.1).
 #pragma once
 
+#include <span>
+
 #include "halflight/base/ids.h"
 #include "halflight/base/vec.h"
 #include "halflight/scene/geometry.h"
@@ -21,6 +23,10 @@ inline float extinction(float blocking_area, const Bounds3f& box) {
 
 // Flat boxes get a thickness, so that their volume is not zero.
 Bounds3f thickened(const Bounds3f& box);
+
+// kappa for which the mean transmittance over chords of these lengths is the given one. What lets
+// through less than 1e-3 counts as that.
+float fit_extinction(std::span<const float> chords, float transmittance);
 
 // Mean over the triangle's area.
 float mean_opacity(const Scene& scene, const Geometry& geometry, TriangleId triangle);

@@ -9,7 +9,6 @@
 namespace halflight {
 namespace {
 
-constexpr std::size_t kWide = 8;
 constexpr int kDeepestCluster = 64;     // below, clusters no longer count: their triangles do
 constexpr int kDeepestHeuristic = 80;   // below, splits are even, so that the depth stays bounded
 constexpr float kInflation = 0x1p-16f;  // of the largest coordinate: twice what RayScene::lift is
@@ -64,7 +63,11 @@ class MultiresBuilder {
                          task.depth + 1, members(task.items[i], task.depth + 1)});
     }
     take_contents();
-    encode_extinction();
+    std::vector<float> extinctions(out_.contents.size());
+    for (std::size_t slot = 0; slot < extinctions.size(); ++slot)
+      if (out_.has(slot))
+        extinctions[slot] = extinction(out_.blocking_areas[slot], out_.box_of(slot));
+    out_.store_extinctions(extinctions);
     return std::move(out_);
   }
 
@@ -191,6 +194,12 @@ class MultiresBuilder {
     if (items.size() > kWide) bundle(items, cluster, depth);
     std::stable_partition(items.begin(), items.end(),
                           [](const SlotItem& i) { return !i.is_leaf(); });
+    // Rays look first into the last node of a row: what blocks most may end them at once.
+    const auto nodes =
+        std::find_if(items.begin(), items.end(), [](const auto& i) { return i.is_leaf(); });
+    std::stable_sort(items.begin(), nodes, [](const SlotItem& a, const SlotItem& b) {
+      return a.blocking_area < b.blocking_area;
+    });
     for (SlotItem& item : items)
       if (item.is_leaf() && !item.inside_end) item.ends = true;
   }
@@ -263,8 +272,10 @@ class MultiresBuilder {
       int high = static_cast<int>(std::ceil((box.upper[axis] - origin) / scale));
       while (low > 0 && origin + scale * static_cast<float>(low) > box.lower[axis]) --low;
       while (high < 255 && origin + scale * static_cast<float>(high) < box.upper[axis]) ++high;
-      node.bounds[2 * axis][slot] = static_cast<std::uint8_t>(std::clamp(low, 0, 254));
-      node.bounds[2 * axis + 1][slot] = static_cast<std::uint8_t>(std::clamp(high, low + 1, 255));
+      node.bounds[MultiresNode::lower_row(axis)][slot] =
+          static_cast<std::uint8_t>(std::clamp(low, 0, 254));
+      node.bounds[MultiresNode::lower_row(axis) + 1][slot] =
+          static_cast<std::uint8_t>(std::clamp(high, low + 1, 255));
     }
   }
 
@@ -298,22 +309,6 @@ class MultiresBuilder {
     }
   }
 
-  void encode_extinction() {
-    float largest = 0.f;
-    const auto each_slot = [&](const auto& visit) {
-      for (std::size_t n = 0; n < out_.nodes.size(); ++n)
-        for (std::uint32_t i = 0; i < out_.nodes[n].slot_count; ++i)
-          visit(out_.nodes[n], i,
-                extinction(out_.blocking_areas[kWide * n + i],
-                           out_.nodes[n].box_of(static_cast<int>(i))));
-    };
-    each_slot([&](MultiresNode&, std::uint32_t, float k) { largest = std::max(largest, k); });
-    out_.extinction_code = ExtinctionCode::for_largest(largest);
-    each_slot([&](MultiresNode& node, std::uint32_t i, float k) {
-      node.extinction[i] = out_.extinction_code.encode(k, false);
-    });
-  }
-
   const Scene& scene_;
   const Geometry& geometry_;
   const Surfaces& surfaces_;
@@ -327,6 +322,14 @@ class MultiresBuilder {
 };
 
 }  // namespace
+
+ClusterTree one_cluster(const Surfaces& surfaces) {
+  ClusterTree tree;
+  tree.clusters.resize(1);
+  for (std::size_t s = 0; s < surfaces.surfaces.size(); ++s)
+    tree.clusters[0].surfaces.emplace_back(s);
+  return tree;
+}
 
 MultiresNodes build_multires_nodes(const Scene& scene, const Geometry& geometry,
                                    const Surfaces& surfaces, const ClusterTree& clusters) {

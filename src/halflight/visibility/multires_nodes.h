@@ -50,11 +50,14 @@ struct alignas(64) MultiresNode {
   std::uint8_t ends = 0;  // bit i: slot i holds the surfaces of one cluster; average stops there
   std::uint8_t unused[17]{};
 
+  static std::size_t lower_row(int axis) { return 2 * static_cast<std::size_t>(axis); }
   Bounds3f box_of(int slot) const {
     Bounds3f box;
     for (int axis = 0; axis < 3; ++axis) {
-      box.lower[axis] = origin[axis] + scale[axis] * static_cast<float>(bounds[2 * axis][slot]);
-      box.upper[axis] = origin[axis] + scale[axis] * static_cast<float>(bounds[2 * axis + 1][slot]);
+      box.lower[axis] =
+          origin[axis] + scale[axis] * static_cast<float>(bounds[lower_row(axis)][slot]);
+      box.upper[axis] =
+          origin[axis] + scale[axis] * static_cast<float>(bounds[lower_row(axis) + 1][slot]);
     }
     return box;
   }
@@ -74,6 +77,8 @@ struct DirectionalRow {
   std::uint8_t blocker_size[8]{};
 };
 
+inline constexpr std::size_t kWide = 8;  // slots of a node
+
 struct MultiresNodes {
   std::vector<MultiresNode> nodes;  // 0 is the root; none without triangles
   std::vector<TriangleBlock> blocks;
@@ -86,6 +91,22 @@ struct MultiresNodes {
   std::vector<float> blocking_areas;  // of each slot
   ExtinctionCode extinction_code;
   BlockerCode blocker_code;
+
+  bool has(std::size_t slot) const { return slot % kWide < nodes[slot / kWide].slot_count; }
+  Bounds3f box_of(std::size_t slot) const {
+    return nodes[slot / kWide].box_of(static_cast<int>(slot % kWide));
+  }
+  float extinction_of(std::size_t slot) const {
+    return extinction_code.decode(nodes[slot / kWide].extinction[slot % kWide]);
+  }
+  // One for each slot, 1/m.
+  void store_extinctions(const std::vector<float>& extinctions) {
+    extinction_code = ExtinctionCode::for_largest(
+        extinctions.empty() ? 0.f : *std::max_element(extinctions.begin(), extinctions.end()));
+    for (std::size_t slot = 0; slot < extinctions.size(); ++slot)
+      nodes[slot / kWide].extinction[slot % kWide] =
+          extinction_code.encode(extinctions[slot], false);
+  }
 };
 
 }  // namespace halflight

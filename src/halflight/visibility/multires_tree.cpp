@@ -2,162 +2,17 @@
 
 #include <cmath>
 
-#include <immintrin.h>
-
 #include "halflight/base/hash.h"
 #include "halflight/base/parallel.h"
+#include "halflight/visibility/coverage_extinction.h"
 #include "halflight/visibility/extinction.h"
 #include "halflight/visibility/multires_build.h"
+#include "halflight/visibility/wide_ray.h"
 
 namespace halflight {
 namespace {
 
-constexpr float kOpaque = 1e-3f;    // as RayScene: a transmittance below this counts as blocked
 constexpr float kDarkDepth = 6.9f;  // -ln(kOpaque), a little less
-constexpr std::size_t kStackSize = 1024;  // 7 * (depth of the tree) + 1; multires_build.cpp
-constexpr std::size_t kWide = 8;
-
-// A ray as eight lanes want it.
-struct WideRay {
-  float origin[3], direction[3], inverse[3];
-  int near_row[3], far_row[3];  // of MultiresNode::bounds
-  float length;                 // metres in one unit of the direction
-
-  explicit WideRay(const VisibilityRay& ray) : length(glm::length(ray.direction)) {
-    for (int axis = 0; axis < 3; ++axis) {
-      origin[axis] = ray.receiver[axis];
-      direction[axis] = ray.direction[axis];
-      // Rays along a side: large instead of infinite, so that no product is undefined.
-      const float d = direction[axis];
-      inverse[axis] = 1.f / (std::abs(d) < 1e-18f ? std::copysign(1e-18f, d) : d);
-      near_row[axis] = 2 * axis + (inverse[axis] < 0.f);
-      far_row[axis] = 2 * axis + (inverse[axis] >= 0.f);
-    }
-  }
-};
-
-__m256 load_bytes(const std::uint8_t* bytes) {
-  const __m128i packed = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(bytes));
-  return _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(packed));
-}
-__m256 decode(const ExtinctionCode& code, const std::uint16_t* packed) {
-  const __m128i bits = _mm_loadu_si128(reinterpret_cast<const __m128i*>(packed));
-  return _mm256_castsi256_ps(_mm256_add_epi32(_mm256_slli_epi32(_mm256_cvtepu16_epi32(bits), 13),
-                                              _mm256_set1_epi32(code.base)));
-}
-__m256 decode(const BlockerCode& code, const std::uint8_t* packed) {
-  const __m128i bits = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(packed));
-  return _mm256_castsi256_ps(_mm256_add_epi32(_mm256_slli_epi32(_mm256_cvtepu8_epi32(bits), 20),
-                                              _mm256_set1_epi32(code.base)));
-}
-unsigned mask_of(__m256 comparison) {
-  return static_cast<unsigned>(_mm256_movemask_ps(comparison));
-}
-__m256 lanes_of(unsigned mask) {
-  const __m256i bit = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-  const __m256i set = _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(mask)), bit);
-  return _mm256_castsi256_ps(_mm256_cmpeq_epi32(set, bit));
-}
-float sum_of(__m256 v) {
-  const __m128 four = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
-  const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
-  return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
-}
-
-// Where the ray is inside the boxes of a node's slots, in units of its direction.
-struct Spans {
-  __m256 near, far;
-  __m256 side;  // longest side of each box, m
-  unsigned met;
-};
-
-// Slots that begin beyond `nearest` are not met; where the others end does not depend on it, so
-// that the same ray stops at the same clusters whatever was found before.
-Spans meet_slots(const MultiresNode& node, const WideRay& ray, float reach, float nearest) {
-  Spans spans{_mm256_setzero_ps(), _mm256_set1_ps(reach), _mm256_setzero_ps(), 0};
-  for (int axis = 0; axis < 3; ++axis) {
-    const __m256 low = load_bytes(node.bounds[ray.near_row[axis]]);
-    const __m256 high = load_bytes(node.bounds[ray.far_row[axis]]);
-    const __m256 scale = _mm256_set1_ps(node.scale[axis] * ray.inverse[axis]);
-    const __m256 start = _mm256_set1_ps((node.origin[axis] - ray.origin[axis]) * ray.inverse[axis]);
-    spans.near = _mm256_max_ps(spans.near, _mm256_add_ps(start, _mm256_mul_ps(low, scale)));
-    spans.far = _mm256_min_ps(spans.far, _mm256_add_ps(start, _mm256_mul_ps(high, scale)));
-    const __m256 steps = _mm256_andnot_ps(_mm256_set1_ps(-0.f), _mm256_sub_ps(high, low));
-    spans.side = _mm256_max_ps(spans.side, _mm256_mul_ps(steps, _mm256_set1_ps(node.scale[axis])));
-  }
-  const __m256 crossed = _mm256_cmp_ps(spans.near, spans.far, _CMP_LE_OQ);
-  const __m256 wanted = _mm256_cmp_ps(spans.near, _mm256_set1_ps(nearest), _CMP_LE_OQ);
-  spans.met = mask_of(_mm256_and_ps(crossed, wanted)) & ((1u << node.slot_count) - 1u);
-  return spans;
-}
-
-struct BlockHits {
-  __m256 distance, second, third;  // barycentric weights of those corners
-  unsigned met = 0;
-};
-
-// Edges seen from the ray's origin: a ray between two triangles that share an edge meets one of
-// them (as Embree's robust mode; Kensler and Shirley 2006).
-BlockHits meet_block(const TriangleBlock& block, const WideRay& ray, float reach) {
-  struct Wide {
-    __m256 x, y, z;
-  };
-  const auto minus = [](const Wide& a, const Wide& b) {
-    return Wide{_mm256_sub_ps(a.x, b.x), _mm256_sub_ps(a.y, b.y), _mm256_sub_ps(a.z, b.z)};
-  };
-  const auto plus = [](const Wide& a, const Wide& b) {
-    return Wide{_mm256_add_ps(a.x, b.x), _mm256_add_ps(a.y, b.y), _mm256_add_ps(a.z, b.z)};
-  };
-  const auto cross = [](const Wide& a, const Wide& b) {
-    return Wide{_mm256_sub_ps(_mm256_mul_ps(a.y, b.z), _mm256_mul_ps(a.z, b.y)),
-                _mm256_sub_ps(_mm256_mul_ps(a.z, b.x), _mm256_mul_ps(a.x, b.z)),
-                _mm256_sub_ps(_mm256_mul_ps(a.x, b.y), _mm256_mul_ps(a.y, b.x))};
-  };
-  const auto dot = [](const Wide& a, const Wide& b) {
-    return _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(a.x, b.x), _mm256_mul_ps(a.y, b.y)),
-                         _mm256_mul_ps(a.z, b.z));
-  };
-  const auto corner = [&](int k) {
-    const auto lane = [&](int axis) {
-      return _mm256_sub_ps(_mm256_load_ps(block.corners[3 * k + axis]),
-                           _mm256_set1_ps(ray.origin[axis]));
-    };
-    return Wide{lane(0), lane(1), lane(2)};
-  };
-  const Wide direction{_mm256_set1_ps(ray.direction[0]), _mm256_set1_ps(ray.direction[1]),
-                       _mm256_set1_ps(ray.direction[2])};
-  const Wide a = corner(0), b = corner(1), c = corner(2);
-  const Wide ac = minus(c, a), ba = minus(a, b), cb = minus(b, c);
-  const __m256 u = dot(cross(ac, plus(c, a)), direction);
-  const __m256 v = dot(cross(ba, plus(a, b)), direction);
-  const __m256 w = dot(cross(cb, plus(b, c)), direction);
-  const __m256 all = _mm256_add_ps(_mm256_add_ps(u, v), w);
-  const __m256 sign = _mm256_set1_ps(-0.f);
-  const __m256 slack = _mm256_mul_ps(_mm256_andnot_ps(sign, all), _mm256_set1_ps(0x1p-23f));
-  const __m256 least = _mm256_min_ps(_mm256_min_ps(u, v), w);
-  const __m256 most = _mm256_max_ps(_mm256_max_ps(u, v), w);
-  const __m256 inside = _mm256_or_ps(_mm256_cmp_ps(least, _mm256_xor_ps(slack, sign), _CMP_GE_OQ),
-                                     _mm256_cmp_ps(most, slack, _CMP_LE_OQ));
-  BlockHits hits{};
-  hits.met = mask_of(inside) & block.used;
-  if (hits.met == 0) return hits;
-  const Wide normal = cross(ac, ba);
-  const __m256 slope = dot(normal, direction);
-  hits.distance = _mm256_div_ps(dot(a, normal), slope);
-  hits.second = _mm256_div_ps(u, all);
-  hits.third = _mm256_div_ps(v, all);
-  const __m256 within =
-      _mm256_and_ps(_mm256_cmp_ps(hits.distance, _mm256_setzero_ps(), _CMP_GE_OQ),
-                    _mm256_cmp_ps(hits.distance, _mm256_set1_ps(reach), _CMP_LE_OQ));
-  hits.met &=
-      mask_of(_mm256_and_ps(within, _mm256_cmp_ps(slope, _mm256_setzero_ps(), _CMP_NEQ_OQ)));
-  return hits;
-}
-
-template <class Visit>
-void for_each_bit(unsigned mask, const Visit& visit) {
-  for (; mask != 0; mask &= mask - 1) visit(static_cast<unsigned>(__builtin_ctz(mask)));
-}
 
 }  // namespace
 
@@ -178,7 +33,7 @@ void MultiresTree::walk(const VisibilityRay& ray, const StopRule& rule, bool ave
   const bool by_side = options_.blocker_size == BlockerSizeRule::longest_side;
   const int direction = rows_.empty() ? 0 : nearest_picture_direction(ray.direction);
 
-  std::uint32_t stack[kStackSize];
+  std::array<std::uint32_t, kTraversalStack> stack;
   std::size_t stacked = 0;
   stack[stacked++] = 0;
   while (stacked > 0) {
@@ -212,8 +67,10 @@ void MultiresTree::walk(const VisibilityRay& ray, const StopRule& rule, bool ave
     unsigned blocks = open >> node.node_count;
     for (; blocks != 0; blocks &= blocks - 1)
       if (!visit.block(node.first_block + static_cast<unsigned>(__builtin_ctz(blocks)))) return;
-    for_each_bit(open & ((1u << node.node_count) - 1u),
-                 [&](unsigned slot) { stack[stacked++] = node.first_node + slot; });
+    for_each_bit(open & ((1u << node.node_count) - 1u), [&](unsigned slot) {
+      stack[stacked++] = node.first_node + slot;
+      prefetch(arrays_.nodes[node.first_node + slot]);
+    });
   }
 }
 
@@ -242,17 +99,7 @@ struct Weakening {
   }
   bool block(std::uint32_t index) {
     if (count) ++count->blocks;
-    const TriangleBlock& b = arrays.blocks[index];
-    const BlockHits hits = meet_block(b, ray, far);
-    if ((hits.met & ~b.transparent) != 0) transmittance = 0.f;
-    if (transmittance == 0.f || hits.met == 0) return transmittance > 0.f;
-    alignas(32) float second[8], third[8];
-    _mm256_store_ps(second, hits.second);
-    _mm256_store_ps(third, hits.third);
-    for_each_bit(hits.met, [&](unsigned lane) {
-      transmittance *=
-          1.f - opacity_at(scene, geometry, b.triangles[lane], {second[lane], third[lane]});
-    });
+    transmittance *= through_block(scene, geometry, arrays.blocks[index], ray, far);
     return transmittance >= kOpaque;
   }
   float result() const {
@@ -339,7 +186,9 @@ MultiresTree::MultiresTree(const Scene& scene, const Geometry& geometry, const S
       geometry_(&geometry),
       options_(options),
       arrays_(build_multires_nodes(scene, geometry, surfaces, clusters)) {
-  if (options.blocker_size != BlockerSizeRule::longest_side || options.coverage_extinction)
+  if (options.extinction != ExtinctionRule::area) fit_coverage(scene, geometry, arrays_);
+  if (options.blocker_size != BlockerSizeRule::longest_side ||
+      options.extinction == ExtinctionRule::directional_coverage)
     take_pictures();
 }
 
@@ -359,6 +208,7 @@ void MultiresTree::take_pictures() {
     float isotropic = 0.f;
   };
   std::vector<Seen> seen(slots);
+  const bool directional = options_.extinction == ExtinctionRule::directional_coverage;
   parallel_for(slots, 8, [&](std::size_t i) {
     const MultiresNode& node = arrays_.nodes[i / kWide];
     if (i % kWide >= node.slot_count) return;
@@ -372,7 +222,7 @@ void MultiresTree::take_pictures() {
     const BlockerSizes sizes = measure_blocker_sizes(*scene_, *geometry_, contents(i), box);
     for (int d = 0; d < kPictureDirections; ++d) {
       s.size[d] = sizes.pictures[d].blocker_size();
-      if (options_.coverage_extinction) s.extinction[d] = sizes.pictures[d].extinction;
+      if (directional) s.extinction[d] = sizes.pictures[d].extinction;
     }
     s.isotropic = sizes.isotropic();
   });
@@ -384,8 +234,7 @@ void MultiresTree::take_pictures() {
     for (const float k : s.extinction) largest_extinction = std::max(largest_extinction, k);
   }
   arrays_.blocker_code = BlockerCode::for_largest(largest_size);
-  const bool by_direction =
-      options_.blocker_size == BlockerSizeRule::directional || options_.coverage_extinction;
+  const bool by_direction = options_.blocker_size == BlockerSizeRule::directional || directional;
   if (by_direction) {
     arrays_.extinction_code = ExtinctionCode::for_largest(largest_extinction);
     rows_.resize(kPictureDirections * arrays_.nodes.size());

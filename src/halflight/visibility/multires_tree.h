@@ -9,7 +9,7 @@
 #include "halflight/hierarchy/cluster_tree.h"
 #include "halflight/visibility/blocker_size.h"
 #include "halflight/visibility/criterion.h"
-#include "halflight/visibility/multires_nodes.h"
+#include "halflight/visibility/wide_ray.h"
 
 namespace halflight {
 
@@ -20,22 +20,21 @@ enum class BlockerSizeRule : std::uint8_t {
   directional,   // BSIZE of the picture direction nearest to the ray
 };
 
+// What a stopped cluster takes away.
+enum class ExtinctionRule : std::uint8_t {
+  area,                 // the mean of A / 2V and A / 4V (paper; extinction.h)
+  coverage,             // what its box covers on the mean (coverage_extinction.h)
+  directional_coverage  // what the picture nearest to the ray covers (blocker_size.h)
+};
+
 struct MultiresOptions {
   BlockerSizeRule blocker_size = BlockerSizeRule::longest_side;
-  // Extinction per direction that keeps the coverage of the pictures, instead of A / 2V and A / 4V.
-  bool coverage_extinction = false;
+  ExtinctionRule extinction = ExtinctionRule::coverage;
   // Boxes smaller than this get no pictures but longest side and mean extinction, m.
   float smallest_picture = 0.f;
   // A cluster is opened when the receiver is nearer than this many longest sides of its box: leaves
   // would else lose the shadow of their own plant.
   float receiver_clearance = 0.5f;
-};
-
-// From the receiver to the emitter: direction * reach is the way between them.
-struct VisibilityRay {
-  Vec3 receiver{0.f};
-  Vec3 direction{0.f, 0.f, 1.f};
-  float reach = kInfinity;
 };
 
 // What rays have cost; adds up over all that were given the same count.

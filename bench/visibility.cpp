@@ -1,0 +1,169 @@
+// Rays per second of exact (Embree), average and multi-resolution visibility, from points on the
+// floor to a light on the ceiling through clutter of rising size.
+//
+//   bench_visibility --benchmark_filter=plants/65536
+//
+// Names: scene / triangles or small things / light / order of the rays / visibility at s as a share
+// of the scene's longest side. Beside the time: nodes and triangle blocks looked into for each ray,
+// mean transmittance, and how far it is from the exact mean.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+
+#include "halflight/base/hash.h"
+#include "halflight/hierarchy/morton.h"
+#include "halflight/hierarchy/size_grid.h"
+#include "halflight/scene/procedural/office.h"
+#include "halflight/scene/procedural/plants.h"
+#include "halflight/visibility/multires_build.h"
+#include "halflight/visibility/visibility.h"
+
+namespace halflight {
+namespace {
+
+constexpr std::size_t kRays = 1u << 16;
+
+struct Case {
+  std::string scene;
+  int count;
+  bool size_grid = false;  // clusters of the solver; else the tree's own
+
+  friend bool operator==(const Case&, const Case&) = default;
+};
+
+struct Loaded {
+  Case what;
+  std::unique_ptr<World> world;
+  Surfaces surfaces;
+  ClusterTree clusters;
+  std::unique_ptr<MultiresTree> tree;
+  double cluster_seconds = 0.0, tree_seconds = 0.0;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// One scene at a time stays in memory.
+const Loaded& load(const Case& what) {
+  static Loaded loaded;
+  if (loaded.tree && loaded.what == what) return loaded;
+  loaded = {};
+  loaded.what = what;
+  loaded.world = std::make_unique<World>(what.scene == "plants" ? plants_scene({what.count, 1})
+                                                                : office_scene({what.count, 1}));
+  const World& world = *loaded.world;
+  loaded.surfaces = build_surfaces(world.geometry);
+  std::vector<Bounds3f> boxes;
+  for (const Surface& s : loaded.surfaces.surfaces) boxes.push_back(s.box);
+  auto start = std::chrono::steady_clock::now();
+  loaded.clusters = what.size_grid ? build_size_grid(boxes) : one_cluster(loaded.surfaces);
+  loaded.cluster_seconds = seconds_since(start);
+  start = std::chrono::steady_clock::now();
+  loaded.tree =
+      std::make_unique<MultiresTree>(world.scene, world.geometry, loaded.surfaces, loaded.clusters);
+  loaded.tree_seconds = seconds_since(start);
+  fmt::print("{}{} {}: {} triangles, {} nodes; size grid {:.2f} s, tree {:.2f} s\n", what.scene,
+             what.size_grid ? "-size-grid" : "", what.count, world.geometry.triangles.size(),
+             loaded.tree->arrays().nodes.size(), loaded.cluster_seconds, loaded.tree_seconds);
+  return loaded;
+}
+
+// From just above the floor to a light of `size` below the middle of the ceiling.
+std::vector<RayEnds> floor_to_light(const Bounds3f& room, float size, bool sorted) {
+  std::vector<RayEnds> rays(kRays);
+  const Vec3 e = room.extent();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto number = [&](int k) { return to_unit_float(hash(i, k)); };
+    rays[i].receiver =
+        room.lower + e * Vec3(0.05f + 0.9f * number(0), 0.01f, 0.05f + 0.9f * number(1));
+    rays[i].emitter = room.lower + e * Vec3(0.5f, 0.9f, 0.5f) +
+                      size * Vec3(number(2) - 0.5f, 0.f, number(3) - 0.5f);
+    rays[i].emitter_size = size;
+  }
+  if (sorted)
+    std::sort(rays.begin(), rays.end(), [&](const RayEnds& a, const RayEnds& b) {
+      return morton_code(a.receiver, room) < morton_code(b.receiver, room);
+    });
+  return rays;
+}
+
+enum class Way { exact, tree_exact, average, multires };
+
+void shoot(benchmark::State& state, const Case& what, float light, bool sorted, Way way,
+           float share) {
+  const Loaded& loaded = load(what);
+  const World& world = *loaded.world;
+  const Bounds3f& room = world.geometry.bounds;
+  const auto rays = floor_to_light(room, light, sorted);
+  const float s = share * room.longest_side();
+  TraversalCount count;
+  const auto light_of = [&](const RayEnds& r, TraversalCount* c) {
+    const VisibilityRay ray{r.receiver, r.emitter - r.receiver, 1.f};
+    const StopRule rule = StopRule::between(s, r.emitter_size);
+    switch (way) {
+      case Way::exact:
+        return world.rays.transmittance(r.receiver, r.emitter);
+      case Way::tree_exact:
+        return loaded.tree->multires(ray, StopRule::never(), c);
+      case Way::average:
+        return loaded.tree->average(ray, rule, c);
+      case Way::multires:
+        break;
+    }
+    return loaded.tree->multires(ray, rule, c);
+  };
+  double mean = 0.0, exact = 0.0;
+  for (const RayEnds& r : rays) {
+    mean += light_of(r, &count) / kRays;
+    exact += world.rays.transmittance(r.receiver, r.emitter) / kRays;
+  }
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(light_of(rays[i], nullptr));
+    i = (i + 1) % kRays;
+  }
+  state.counters["Mray/s"] = benchmark::Counter(static_cast<double>(state.iterations()) * 1e-6,
+                                                benchmark::Counter::kIsRate);
+  state.counters["nodes"] = static_cast<double>(count.nodes) / kRays;
+  state.counters["blocks"] = static_cast<double>(count.blocks) / kRays;
+  state.counters["stops"] = static_cast<double>(count.stops) / kRays;
+  state.counters["mean"] = mean;
+  state.counters["bias"] = mean - exact;
+}
+
+void register_all() {
+  const std::vector<Case> cases{
+      {"plants", 1 << 16}, {"plants", 1 << 19}, {"plants", 1 << 21},       {"office", 1200},
+      {"office", 8000},    {"office", 32000},   {"plants", 1 << 19, true}, {"office", 32000, true}};
+  for (const Case& c : cases)
+    for (const float light : {1.f, 0.f})
+      for (const bool sorted : {false, true}) {
+        const auto add = [&](const std::string& name, Way way, float share) {
+          benchmark::RegisterBenchmark(
+              fmt::format("{}{}/{}/{}/{}/{}", c.scene, c.size_grid ? "-size-grid" : "", c.count,
+                          light > 0.f ? "area" : "point", sorted ? "sorted" : "random", name)
+                  .c_str(),
+              [=](benchmark::State& state) { shoot(state, c, light, sorted, way, share); })
+              ->MinTime(0.3);
+        };
+        add("exact", Way::exact, 0.f);
+        add("tree_exact", Way::tree_exact, 0.f);
+        for (const float share : {0.002f, 0.01f, 0.04f, 0.1f}) {
+          add(fmt::format("average@{:g}%", 100.f * share), Way::average, share);
+          add(fmt::format("multires@{:g}%", 100.f * share), Way::multires, share);
+        }
+      }
+}
+
+}  // namespace
+}  // namespace halflight
+
+int main(int argc, char** argv) {
+  halflight::register_all();
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

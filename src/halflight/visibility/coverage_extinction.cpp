@@ -1,0 +1,90 @@
+#include "halflight/visibility/coverage_extinction.h"
+
+#include <array>
+
+#include "halflight/base/parallel.h"
+#include "halflight/rays/sampling.h"
+#include "halflight/visibility/extinction.h"
+#include "halflight/visibility/wide_ray.h"
+
+namespace halflight {
+namespace {
+
+constexpr int kChords = 64;
+
+// A line through a box, from one side to another: a point uniform over the sides and a direction by
+// the cosine law make lines uniform.
+VisibilityRay random_chord(const Bounds3f& box, std::uint64_t seed, std::uint32_t i) {
+  const Vec3 e = box.extent();
+  const Vec3 areas(e.y * e.z, e.z * e.x, e.x * e.y);
+  float choice = to_unit_float(hash(seed, i)) * (areas.x + areas.y + areas.z);
+  int axis = 0;
+  while (axis < 2 && choice >= areas[axis]) choice -= areas[axis++];
+  const bool upper = (hash(seed, i, 1) & 1u) != 0;
+  const Vec2 at = r2_sequence(i, random_shift(hash(seed, 2)));
+  VisibilityRay chord;
+  chord.receiver[axis] = upper ? box.upper[axis] : box.lower[axis];
+  chord.receiver[(axis + 1) % 3] = box.lower[(axis + 1) % 3] + e[(axis + 1) % 3] * at.x;
+  chord.receiver[(axis + 2) % 3] = box.lower[(axis + 2) % 3] + e[(axis + 2) % 3] * at.y;
+  Vec3 inwards(0.f);
+  inwards[axis] = upper ? -1.f : 1.f;
+  const Vec2 u(to_unit_float(hash(seed, i, 3)), to_unit_float(hash(seed, i, 4)));
+  chord.direction = Frame::from_normal(inwards).to_world(cosine_hemisphere(u));
+  chord.reach = kInfinity;
+  for (int k = 0; k < 3; ++k) {
+    const float d = chord.direction[k];
+    if (std::abs(d) < 1e-6f) continue;
+    const float side = d > 0.f ? box.upper[k] : box.lower[k];
+    chord.reach = std::min(chord.reach, std::max((side - chord.receiver[k]) / d, 0.f));
+  }
+  return chord;
+}
+
+// Exact, through all triangles below a node.
+float through_node(const Scene& scene, const Geometry& geometry, const MultiresNodes& arrays,
+                   std::uint32_t root, const WideRay& ray, float reach) {
+  std::array<std::uint32_t, kTraversalStack> stack;
+  std::size_t stacked = 0;
+  stack[stacked++] = root;
+  float light = 1.f;
+  while (stacked > 0) {
+    const MultiresNode& node = arrays.nodes[stack[--stacked]];
+    const unsigned met = meet_slots(node, ray, reach, reach).met;
+    for (unsigned blocks = met >> node.node_count; blocks != 0; blocks &= blocks - 1) {
+      const auto i = static_cast<unsigned>(__builtin_ctz(blocks));
+      light *= through_block(scene, geometry, arrays.blocks[node.first_block + i], ray, reach);
+      if (light < kOpaque) return 0.f;
+    }
+    for_each_bit(met & ((1u << node.node_count) - 1u),
+                 [&](unsigned slot) { stack[stacked++] = node.first_node + slot; });
+  }
+  return light;
+}
+
+}  // namespace
+
+void fit_coverage(const Scene& scene, const Geometry& geometry, MultiresNodes& arrays) {
+  std::vector<float> extinctions(arrays.contents.size(), 0.f);
+  parallel_for(extinctions.size(), 64, [&](std::size_t slot) {
+    if (!arrays.has(slot)) return;
+    const MultiresNode& node = arrays.nodes[slot / kWide];
+    const auto i = static_cast<std::uint32_t>(slot % kWide);
+    const Bounds3f box = arrays.box_of(slot);
+    std::array<float, kChords> lengths;
+    float light = 0.f;
+    for (std::uint32_t k = 0; k < kChords; ++k) {
+      const VisibilityRay chord = random_chord(box, slot, k);
+      const WideRay ray(chord);
+      lengths[k] = chord.reach;
+      light += i < node.node_count
+                   ? through_node(scene, geometry, arrays, node.first_node + i, ray, chord.reach)
+                   : through_block(scene, geometry,
+                                   arrays.blocks[node.first_block + i - node.node_count], ray,
+                                   chord.reach);
+    }
+    extinctions[slot] = fit_extinction(lengths, light / kChords);
+  });
+  arrays.store_extinctions(extinctions);
+}
+
+}  // namespace halflight
