@@ -11,6 +11,8 @@ std::span<const Experiment> all_experiments() {
       Experiment{"figure2", "erosion and expansion of a binary image", run_figure2},
       Experiment{"figure3", "erosions followed by as many expansions", run_figure3},
       Experiment{"figure4", "feature masks of the four groups of cubes", run_figure4},
+      Experiment{"figure9", "cost and error of multi-resolution visibility, by feature size",
+                 run_figure9},
       Experiment{"table1", "the feature-based error metric of the four groups", run_table1},
   };
   return kExperiments;

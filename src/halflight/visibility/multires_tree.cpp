@@ -39,8 +39,8 @@ void MultiresTree::walk(const VisibilityRay& ray, const StopRule& rule, bool ave
   while (stacked > 0) {
     const std::uint32_t index = stack[--stacked];
     const MultiresNode& node = arrays_.nodes[index];
-    visit.node();
     const Spans spans = meet_slots(node, wide, ray.reach, visit.reach());
+    visit.node(spans.met);
     if (spans.met == 0) continue;
     const DirectionalRow* row =
         rows_.empty() ? nullptr : &rows_[kPictureDirections * index + direction];
@@ -88,8 +88,10 @@ struct Weakening {
   float transmittance = 1.f;  // of the surfaces
 
   float reach() const { return far; }
-  void node() const {
-    if (count) ++count->nodes;
+  void node(unsigned met) const {
+    if (!count) return;
+    ++count->nodes;
+    count->clusters += static_cast<unsigned>(__builtin_popcount(met));
   }
   bool stops(std::uint32_t, unsigned slots, __m256 extinction, const Spans& spans) {
     if (count) count->stops += static_cast<unsigned>(__builtin_popcount(slots));
@@ -119,7 +121,7 @@ struct PathEnd {
   MediumHit nearest;
 
   float reach() const { return nearest.distance; }
-  static void node() {}
+  static void node(unsigned) {}
   bool stops(std::uint32_t index, unsigned slots, __m256 extinction, const Spans& spans) {
     alignas(32) float kappa[8], near[8], far[8];
     _mm256_store_ps(kappa, extinction);
@@ -167,7 +169,7 @@ struct CutRecorder {
   std::vector<std::pair<std::size_t, bool>> slots;  // slot or block, and whether it stopped
 
   float reach() const { return far; }
-  static void node() {}
+  static void node(unsigned) {}
   bool stops(std::uint32_t index, unsigned mask, __m256, const Spans&) {
     for_each_bit(mask, [&](unsigned slot) { slots.emplace_back(kWide * index + slot, true); });
     return true;

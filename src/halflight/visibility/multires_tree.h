@@ -39,9 +39,10 @@ struct MultiresOptions {
 
 // What rays have cost; adds up over all that were given the same count.
 struct TraversalCount {
-  std::uint64_t nodes = 0;   // looked into
-  std::uint64_t stops = 0;   // slots taken as a medium
-  std::uint64_t blocks = 0;  // of up to eight triangles, tested exactly
+  std::uint64_t nodes = 0;     // looked into: eight clusters at once
+  std::uint64_t clusters = 0;  // whose boxes they meet
+  std::uint64_t stops = 0;     // slots taken as a medium
+  std::uint64_t blocks = 0;    // of up to eight triangles, tested exactly
 };
 
 // Where a ray of closest_hit has ended.
