@@ -65,6 +65,14 @@ const Loaded& load(const Case& what) {
   loaded.tree =
       std::make_unique<MultiresTree>(world.scene, world.geometry, loaded.surfaces, loaded.clusters);
   loaded.tree_seconds = seconds_since(start);
+  if (world.geometry.triangles.size() < 100000) {
+    start = std::chrono::steady_clock::now();
+    MultiresOptions pictures;
+    pictures.blocker_size = BlockerSizeRule::isotropic;
+    const MultiresTree pictured(world.scene, world.geometry, loaded.surfaces, loaded.clusters,
+                                pictures);
+    fmt::print("tree with pictures {:.2f} s\n", seconds_since(start));
+  }
   fmt::print("{}{} {}: {} triangles, {} nodes; size grid {:.2f} s, tree {:.2f} s\n", what.scene,
              what.size_grid ? "-size-grid" : "", what.count, world.geometry.triangles.size(),
              loaded.tree->arrays().nodes.size(), loaded.cluster_seconds, loaded.tree_seconds);

@@ -51,39 +51,76 @@ struct Easel {
   }
 };
 
-float doubled_area(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+struct Edge {
+  Vec2 from, to;  // pixels
+  float slope = 0.f;
 
-// Calls draw(x, y, weights of the 2nd and 3rd corner) for the pixels whose centres are inside.
+  Edge(Vec2 a, Vec2 b) : from(a), to(b), slope((b.x - a.x) / (b.y - a.y)) {}
+  bool crosses(float y) const { return (from.y <= y) != (to.y <= y); }
+  float x_at(float y) const { return from.x + (y - from.y) * slope; }
+};
+
+// Calls draw(y, first x, last x) for the pixels whose centres lie in the convex hull of the edges.
 template <class Draw>
-void for_covered_pixels(const Easel& easel, const std::array<Vec3, 3>& corners, const Draw& draw) {
+void for_each_row(const Easel& easel, std::span<const Edge> edges, const Draw& draw) {
+  float lower = kInfinity, upper = -kInfinity;
+  for (const Edge& e : edges) {
+    lower = std::min({lower, e.from.y, e.to.y});
+    upper = std::max({upper, e.from.y, e.to.y});
+  }
+  const int y0 = std::max(0, static_cast<int>(std::ceil(lower - 0.5f)));
+  const int y1 = std::min(easel.height - 1, static_cast<int>(std::floor(upper - 0.5f)));
+  for (int y = y0; y <= y1; ++y) {
+    const float at = static_cast<float>(y) + 0.5f;
+    float left = kInfinity, right = -kInfinity;
+    for (const Edge& e : edges) {
+      if (!e.crosses(at)) continue;
+      left = std::min(left, e.x_at(at));
+      right = std::max(right, e.x_at(at));
+    }
+    if (!(left <= right)) continue;
+    const int x0 = std::max(0, static_cast<int>(std::ceil(left - 0.5f)));
+    const int x1 = std::min(easel.width - 1, static_cast<int>(std::floor(right - 0.5f)));
+    if (x0 <= x1) draw(y, x0, x1);
+  }
+}
+
+void set_row(BinaryImage& image, int y, int x0, int x1) {
+  static_assert(kPixels <= BinaryImage::kWordBits);
+  image.row(y)[0] |= (~BinaryImage::Word{0} >> (BinaryImage::kWordBits - 1 - (x1 - x0))) << x0;
+}
+
+void draw_triangle(const Scene& scene, const Geometry& g, TriangleId t, const Easel& easel,
+                   BinaryImage& image) {
+  const auto corners = g.corners(t);
   const Vec2 a = easel.to_pixels(corners[0]), b = easel.to_pixels(corners[1]),
              c = easel.to_pixels(corners[2]);
+  const std::array edges{Edge(a, b), Edge(b, c), Edge(c, a)};
+  if (!may_be_transparent(scene.materials[g.materials[t]])) {
+    for_each_row(easel, edges, [&](int y, int x0, int x1) { set_row(image, y, x0, x1); });
+    return;
+  }
+  const auto doubled_area = [](Vec2 u, Vec2 v) { return u.x * v.y - u.y * v.x; };
   const float whole = doubled_area(b - a, c - a);
   if (whole == 0.f) return;
-  const Vec2 lower = glm::min(a, glm::min(b, c)), upper = glm::max(a, glm::max(b, c));
-  const int x0 = std::max(0, static_cast<int>(std::ceil(lower.x - 0.5f)));
-  const int y0 = std::max(0, static_cast<int>(std::ceil(lower.y - 0.5f)));
-  const int x1 = std::min(easel.width - 1, static_cast<int>(std::floor(upper.x - 0.5f)));
-  const int y1 = std::min(easel.height - 1, static_cast<int>(std::floor(upper.y - 0.5f)));
-  for (int y = y0; y <= y1; ++y)
+  for_each_row(easel, edges, [&](int y, int x0, int x1) {
     for (int x = x0; x <= x1; ++x) {
-      const Vec2 p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-      const float v = doubled_area(p - a, c - a) / whole, w = doubled_area(b - a, p - a) / whole;
-      if (v >= 0.f && w >= 0.f && v + w <= 1.f) draw(x, y, Vec2(v, w));
+      const Vec2 p = Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) - a;
+      const Vec2 weights(doubled_area(p, c - a) / whole, doubled_area(b - a, p) / whole);
+      if (opacity_at(scene, g, t, weights) >= kOpaqueShare) image.set(x, y);
     }
+  });
 }
 
 BinaryImage picture_box(const Easel& easel, const Bounds3f& box) {
-  // Corners of the six sides, by the bits of their coordinates.
-  static constexpr int kSides[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                       {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
   BinaryImage image(easel.width, easel.height);
-  for (const auto& side : kSides)
-    for (int half = 0; half < 2; ++half)
-      for_covered_pixels(easel,
-                         {Easel::corner_of(box, side[0]), Easel::corner_of(box, side[1 + half]),
-                          Easel::corner_of(box, side[2 + half])},
-                         [&](int x, int y, Vec2) { image.set(x, y); });
+  std::vector<Edge> edges;
+  for (int from = 0; from < 8; ++from)
+    for (const int axis : {1, 2, 4})
+      if ((from & axis) == 0)
+        edges.emplace_back(easel.to_pixels(Easel::corner_of(box, from)),
+                           easel.to_pixels(Easel::corner_of(box, from | axis)));
+  for_each_row(easel, edges, [&](int y, int x0, int x1) { set_row(image, y, x0, x1); });
   return image;
 }
 
@@ -148,12 +185,7 @@ ClusterPicture picture_cluster(const Scene& scene, const Geometry& g,
                                const Vec3& direction) {
   const Easel easel(box, direction);
   BinaryImage blocked(easel.width, easel.height);
-  for (const TriangleId t : contents) {
-    const bool opaque = !may_be_transparent(scene.materials[g.materials[t]]);
-    for_covered_pixels(easel, g.corners(t), [&](int x, int y, Vec2 barycentric) {
-      if (opaque || opacity_at(scene, g, t, barycentric) >= kOpaqueShare) blocked.set(x, y);
-    });
-  }
+  for (const TriangleId t : contents) draw_triangle(scene, g, t, easel, blocked);
   const BinaryImage inside = picture_box(easel, box);
   ClusterPicture picture;
   picture.pixel = easel.pixel;

@@ -53,7 +53,7 @@ float through_node(const Scene& scene, const Geometry& geometry, const MultiresN
     for (unsigned blocks = met >> node.node_count; blocks != 0; blocks &= blocks - 1) {
       const auto i = static_cast<unsigned>(__builtin_ctz(blocks));
       light *= through_block(scene, geometry, arrays.blocks[node.first_block + i], ray, reach);
-      if (light < kOpaque) return 0.f;
+      if (light < kBlockedBelow) return 0.f;
     }
     for_each_bit(met & ((1u << node.node_count) - 1u),
                  [&](unsigned slot) { stack[stacked++] = node.first_node + slot; });

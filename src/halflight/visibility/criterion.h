@@ -16,6 +16,13 @@
 
 namespace halflight {
 
+// From the receiver to the emitter: direction * reach is the way between them.
+struct VisibilityRay {
+  Vec3 receiver{0.f};
+  Vec3 direction{0.f, 0.f, 1.f};
+  float reach = kInfinity;
+};
+
 inline float umbra_width(float blocker, float emitter, float d1, float d2) {
   return blocker + (blocker - emitter) * d2 / d1;
 }

@@ -54,7 +54,7 @@ class MultiresBuilder {
     while (!stack.empty()) {
       Task task = std::move(stack.back());
       stack.pop_back();
-      assert(task.depth < 140);  // the traversal's stack is made for that
+      assert(task.depth < 140);  // kTraversalStack is made for that
       fit(task.items, task.cluster, task.depth);
       fill(task.node, task.items);
       // Last in, first out: the blocks below a slot stay together.

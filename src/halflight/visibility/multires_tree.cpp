@@ -12,7 +12,7 @@
 namespace halflight {
 namespace {
 
-constexpr float kDarkDepth = 6.9f;  // -ln(kOpaque), a little less
+constexpr float kDarkDepth = 6.9f;  // -ln(kBlockedBelow), a little less
 
 }  // namespace
 
@@ -102,11 +102,11 @@ struct Weakening {
   bool block(std::uint32_t index) {
     if (count) ++count->blocks;
     transmittance *= through_block(scene, geometry, arrays.blocks[index], ray, far);
-    return transmittance >= kOpaque;
+    return transmittance >= kBlockedBelow;
   }
   float result() const {
     const float both = depth < kDarkDepth ? transmittance * std::exp(-depth) : 0.f;
-    return both < kOpaque ? 0.f : both;
+    return both < kBlockedBelow ? 0.f : both;
   }
 };
 

@@ -9,7 +9,7 @@
 #include "halflight/hierarchy/cluster_tree.h"
 #include "halflight/visibility/blocker_size.h"
 #include "halflight/visibility/criterion.h"
-#include "halflight/visibility/wide_ray.h"
+#include "halflight/visibility/multires_nodes.h"
 
 namespace halflight {
 

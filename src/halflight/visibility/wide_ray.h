@@ -1,25 +1,20 @@
-// Eight boxes or triangles against one ray (AVX2).
+// Eight boxes or triangles against one ray (AVX2). For sources of this room: programs that use the
+// library may be built for other processors.
 #pragma once
 
 #include <cmath>
 
 #include <immintrin.h>
 
+#include "halflight/visibility/criterion.h"
 #include "halflight/visibility/multires_nodes.h"
 
 namespace halflight {
 
 // A transmittance below this counts as blocked, as in RayScene.
-inline constexpr float kOpaque = 1e-3f;
+inline constexpr float kBlockedBelow = 1e-3f;
 // Entries: 7 * (depth of the tree) + 1, and the builder limits the depth to 140.
 inline constexpr std::size_t kTraversalStack = 1024;
-
-// From the receiver to the emitter: direction * reach is the way between them.
-struct VisibilityRay {
-  Vec3 receiver{0.f};
-  Vec3 direction{0.f, 0.f, 1.f};
-  float reach = kInfinity;
-};
 
 // A ray as eight lanes want it.
 struct WideRay {
