@@ -5,7 +5,8 @@
 //
 // Names: scene / triangles or small things / light / order of the rays / visibility at s as a share
 // of the scene's longest side. Beside the time: nodes and triangle blocks looked into for each ray,
-// mean transmittance, and how far it is from the exact mean.
+// mean transmittance and how far it is from the exact mean, and the variance of rays within cells
+// of side s as a share of that of exact rays: so many fewer rays are needed.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@
 #include "halflight/base/hash.h"
 #include "halflight/hierarchy/morton.h"
 #include "halflight/hierarchy/size_grid.h"
+#include "halflight/rays/sampling.h"
 #include "halflight/scene/procedural/office.h"
 #include "halflight/scene/procedural/plants.h"
 #include "halflight/visibility/multires_build.h"
@@ -98,6 +100,33 @@ std::vector<RayEnds> floor_to_light(const Bounds3f& room, float size, bool sorte
   return rays;
 }
 
+// Mean variance of single rays within square floor cells of side `cell`, each ray to its own place
+// on the light: what has to be averaged away.
+template <class Light>
+double variance_in_cells(const Bounds3f& room, float cell, float size, const Light& light_of) {
+  constexpr int kCells = 512, kRaysPerCell = 32;
+  double sum = 0.0;
+  for (std::uint64_t c = 0; c < kCells; ++c) {
+    const auto number = [&](std::uint64_t ray, int k) { return to_unit_float(hash(c, ray, k)); };
+    double first = 0.0, second = 0.0;
+    for (std::uint64_t i = 1; i <= kRaysPerCell; ++i) {
+      RayEnds r;
+      r.receiver =
+          room.lower +
+          room.extent() * Vec3(0.05f + 0.85f * number(0, 0), 0.01f, 0.05f + 0.85f * number(0, 1)) +
+          cell * Vec3(number(i, 2), 0.f, number(i, 3));
+      r.emitter = room.lower + room.extent() * Vec3(0.5f, 0.9f, 0.5f) +
+                  size * Vec3(number(i, 4) - 0.5f, 0.f, number(i, 5) - 0.5f);
+      r.emitter_size = size;
+      const double light = light_of(r);
+      first += light;
+      second += light * light;
+    }
+    sum += (second - first * first / kRaysPerCell) / (kRaysPerCell - 1);
+  }
+  return sum / kCells;
+}
+
 enum class Way { exact, tree_exact, average, multires };
 
 void shoot(benchmark::State& state, const Case& what, float light, bool sorted, Way way,
@@ -138,15 +167,49 @@ void shoot(benchmark::State& state, const Case& what, float light, bool sorted, 
   state.counters["nodes"] = static_cast<double>(count.nodes) / kRays;
   state.counters["blocks"] = static_cast<double>(count.blocks) / kRays;
   state.counters["stops"] = static_cast<double>(count.stops) / kRays;
+  const auto way_light = [&](const RayEnds& r) { return light_of(r, nullptr); };
+  const auto exact_light = [&](const RayEnds& r) {
+    return world.rays.transmittance(r.receiver, r.emitter);
+  };
+  if (s > 0.f)
+    state.counters["variance"] = variance_in_cells(room, s, light, way_light) /
+                                 std::max(variance_in_cells(room, s, light, exact_light), 1e-9);
   state.counters["mean"] = mean;
   state.counters["bias"] = mean - exact;
+}
+
+// Rays of all directions from the floor up, to the nearest surface or stopped cluster.
+void follow(benchmark::State& state, const Case& what, bool exact, float share) {
+  const Loaded& loaded = load(what);
+  const auto rays = floor_to_light(loaded.world->geometry.bounds, 0.f, false);
+  const StopRule rule =
+      StopRule::widening(share * loaded.world->geometry.bounds.longest_side(), 0.05f);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const Vec2 u(to_unit_float(hash(i, 8)), to_unit_float(hash(i, 9)));
+    const Vec3 d = Frame::from_normal({0, 1, 0}).to_world(cosine_hemisphere(u));
+    if (exact)
+      benchmark::DoNotOptimize(loaded.world->rays.closest_hit(rays[i].receiver, d, kInfinity, i));
+    else
+      benchmark::DoNotOptimize(loaded.tree->closest_hit({rays[i].receiver, d}, rule, i));
+    i = (i + 1) % kRays;
+  }
+  state.counters["Mray/s"] = benchmark::Counter(static_cast<double>(state.iterations()) * 1e-6,
+                                                benchmark::Counter::kIsRate);
 }
 
 void register_all() {
   const std::vector<Case> cases{
       {"plants", 1 << 16}, {"plants", 1 << 19}, {"plants", 1 << 21},       {"office", 1200},
       {"office", 8000},    {"office", 32000},   {"plants", 1 << 19, true}, {"office", 32000, true}};
-  for (const Case& c : cases)
+  for (const Case& c : cases) {
+    for (const float share : {0.f, 0.01f, 0.04f})
+      benchmark::RegisterBenchmark(
+          fmt::format("{}{}/{}/closest/random/{}", c.scene, c.size_grid ? "-size-grid" : "",
+                      c.count, share > 0.f ? fmt::format("multires@{:g}%", 100.f * share) : "exact")
+              .c_str(),
+          [=](benchmark::State& state) { follow(state, c, share == 0.f, share); })
+          ->MinTime(0.3);
     for (const float light : {1.f, 0.f})
       for (const bool sorted : {false, true}) {
         const auto add = [&](const std::string& name, Way way, float share) {
@@ -164,6 +227,7 @@ void register_all() {
           add(fmt::format("multires@{:g}%", 100.f * share), Way::multires, share);
         }
       }
+  }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "halflight/visibility/multires_tree.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "halflight/base/hash.h"
@@ -67,10 +68,19 @@ void MultiresTree::walk(const VisibilityRay& ray, const StopRule& rule, bool ave
     unsigned blocks = open >> node.node_count;
     for (; blocks != 0; blocks &= blocks - 1)
       if (!visit.block(node.first_block + static_cast<unsigned>(__builtin_ctz(blocks)))) return;
+    const std::size_t below = stacked;
     for_each_bit(open & ((1u << node.node_count) - 1u), [&](unsigned slot) {
       stack[stacked++] = node.first_node + slot;
       prefetch(arrays_.nodes[node.first_node + slot]);
     });
+    if constexpr (Visitor::kNearestFirst) {
+      alignas(32) float near[8];
+      _mm256_store_ps(near, spans.near);
+      std::sort(stack.begin() + below, stack.begin() + stacked,
+                [&](std::uint32_t a, std::uint32_t b) {
+                  return near[a - node.first_node] > near[b - node.first_node];
+                });
+    }
   }
 }
 
@@ -78,6 +88,7 @@ namespace {
 
 // Adds up what weakens a ray.
 struct Weakening {
+  static constexpr bool kNearestFirst = false;
   const MultiresNodes& arrays;
   const Scene& scene;
   const Geometry& geometry;
@@ -113,6 +124,7 @@ struct Weakening {
 // Draws where a path ends. Free flights through several media are independent, so the nearest of
 // their ends is the end of all.
 struct PathEnd {
+  static constexpr bool kNearestFirst = true;
   const MultiresNodes& arrays;
   const Scene& scene;
   const Geometry& geometry;
@@ -163,6 +175,7 @@ struct PathEnd {
 };
 
 struct CutRecorder {
+  static constexpr bool kNearestFirst = false;
   const MultiresNodes& arrays;
   WideRay ray;
   float far;
