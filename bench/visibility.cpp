@@ -73,11 +73,12 @@ const Loaded& load(const Case& what) {
     pictures.blocker_size = BlockerSizeRule::isotropic;
     const MultiresTree pictured(world.scene, world.geometry, loaded.surfaces, loaded.clusters,
                                 pictures);
-    fmt::print("tree with pictures {:.2f} s\n", seconds_since(start));
+    fmt::print(stderr, "tree with pictures {:.2f} s\n", seconds_since(start));
   }
-  fmt::print("{}{} {}: {} triangles, {} nodes; size grid {:.2f} s, tree {:.2f} s\n", what.scene,
-             what.size_grid ? "-size-grid" : "", what.count, world.geometry.triangles.size(),
-             loaded.tree->arrays().nodes.size(), loaded.cluster_seconds, loaded.tree_seconds);
+  fmt::print(stderr, "{}{} {}: {} triangles, {} nodes; size grid {:.2f} s, tree {:.2f} s\n",
+             what.scene, what.size_grid ? "-size-grid" : "", what.count,
+             world.geometry.triangles.size(), loaded.tree->arrays().nodes.size(),
+             loaded.cluster_seconds, loaded.tree_seconds);
   return loaded;
 }
 
