@@ -13,7 +13,7 @@ MultiresNodes build_multires_nodes(const Scene& scene, const Geometry& geometry,
                                    const Surfaces& surfaces, const ClusterTree& clusters);
 
 // A cluster tree that leaves all grouping to the heuristic. Rays are faster through the result than
-// through builders that group by size (1.5 times on a million triangles), but the clusters of a
+// through builders that group by size (up to 1.5 times), but the clusters of a
 // solver then are not the nodes where rays stop.
 ClusterTree one_cluster(const Surfaces& surfaces);
 
