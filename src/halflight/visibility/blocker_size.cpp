@@ -51,20 +51,20 @@ struct Easel {
   }
 };
 
-struct Edge {
+struct PictureEdge {
   Vec2 from, to;  // pixels
   float slope = 0.f;
 
-  Edge(Vec2 a, Vec2 b) : from(a), to(b), slope((b.x - a.x) / (b.y - a.y)) {}
+  PictureEdge(Vec2 a, Vec2 b) : from(a), to(b), slope((b.x - a.x) / (b.y - a.y)) {}
   bool crosses(float y) const { return (from.y <= y) != (to.y <= y); }
   float x_at(float y) const { return from.x + (y - from.y) * slope; }
 };
 
 // Calls draw(y, first x, last x) for the pixels whose centres lie in the convex hull of the edges.
 template <class Draw>
-void for_each_row(const Easel& easel, std::span<const Edge> edges, const Draw& draw) {
+void for_each_row(const Easel& easel, std::span<const PictureEdge> edges, const Draw& draw) {
   float lower = kInfinity, upper = -kInfinity;
-  for (const Edge& e : edges) {
+  for (const PictureEdge& e : edges) {
     lower = std::min({lower, e.from.y, e.to.y});
     upper = std::max({upper, e.from.y, e.to.y});
   }
@@ -73,7 +73,7 @@ void for_each_row(const Easel& easel, std::span<const Edge> edges, const Draw& d
   for (int y = y0; y <= y1; ++y) {
     const float at = static_cast<float>(y) + 0.5f;
     float left = kInfinity, right = -kInfinity;
-    for (const Edge& e : edges) {
+    for (const PictureEdge& e : edges) {
       if (!e.crosses(at)) continue;
       left = std::min(left, e.x_at(at));
       right = std::max(right, e.x_at(at));
@@ -95,7 +95,7 @@ void draw_triangle(const Scene& scene, const Geometry& g, TriangleId t, const Ea
   const auto corners = g.corners(t);
   const Vec2 a = easel.to_pixels(corners[0]), b = easel.to_pixels(corners[1]),
              c = easel.to_pixels(corners[2]);
-  const std::array edges{Edge(a, b), Edge(b, c), Edge(c, a)};
+  const std::array edges{PictureEdge(a, b), PictureEdge(b, c), PictureEdge(c, a)};
   if (!may_be_transparent(scene.materials[g.materials[t]])) {
     for_each_row(easel, edges, [&](int y, int x0, int x1) { set_row(image, y, x0, x1); });
     return;
@@ -114,7 +114,7 @@ void draw_triangle(const Scene& scene, const Geometry& g, TriangleId t, const Ea
 
 BinaryImage picture_box(const Easel& easel, const Bounds3f& box) {
   BinaryImage image(easel.width, easel.height);
-  std::vector<Edge> edges;
+  std::vector<PictureEdge> edges;
   for (int from = 0; from < 8; ++from)
     for (const int axis : {1, 2, 4})
       if ((from & axis) == 0)
