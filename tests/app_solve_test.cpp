@@ -170,7 +170,7 @@ TEST_F(SolveCommand, ReportBalancesItsEnergy) {
 TEST_F(SolveCommand, RejectsBadUseInOneLine) {
   for (const char* arguments :
        {"solve missing.obj", "solve room.obj --feature-size huge",
-        "solve room.obj --feature-size 0", "solve room.obj --feature-size -1",
+        "solve room.obj --feature-size -1", "solve room.obj --visibility blurred",
         "solve room.obj --error 0%", "solve room.obj --error x", "solve room.obj --time soon",
         "solve room.obj --links woven", "solve room.obj --threads -1", "solve room.obj --unit mile",
         "solve room.obj --up x", "solve room.obj --points missing.txt", "solve room.obj --sky 1,2",

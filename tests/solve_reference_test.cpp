@@ -151,7 +151,7 @@ TEST(EmitterTreeLight, IsTheDirectLightOfThePathTracer) {
       make_state(make_world(scene.scene), testing::options_of(LinkMaker::sampled, 0.1f));
   const auto points = testing::scatter_sensors(state, 150);
   const auto reference = path_traced(*state.world, points, 1u << 14);
-  const EmitterTree emitters(*state.world, find_emitters(*state.world));
+  const EmitterTree emitters(*state.visibility, find_emitters(*state.world));
   std::vector<float> direct, deviation;
   const float scale = testing::mean(reference);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -170,7 +170,7 @@ TEST(EmitterTreeLight, IsPiLWhereverOneLooksInAFurnace) {
   furnace.boxes = 27;
   const SolverState state =
       make_state(make_world(furnace_scene(furnace)), testing::options_of(LinkMaker::sampled, 0.1f));
-  const EmitterTree emitters(*state.world, find_emitters(*state.world));
+  const EmitterTree emitters(*state.visibility, find_emitters(*state.world));
   const DirectLightOptions few_rays{
       .shadow_rays = 2, .penumbra_rays = 4, .largest_group_share = 0.1f, .smallest_angle = 0.01f};
   for (const auto& [options, tolerance] :

@@ -28,7 +28,7 @@ ElementId front_of_triangle(const SolverState& state, std::size_t triangle) {
 }
 
 float weight(const SolverState& state, ElementId receiver, ElementId source) {
-  const TransferScene scene{state.tree, state.world->rays, state.radiosity, state.opacity};
+  const TransferScene scene{state.tree, *state.visibility, 0.f, state.radiosity, state.opacity};
   return estimate_transfer(scene, receiver, source, kSamples, 1).weight;
 }
 

@@ -93,11 +93,10 @@ void add_render(CLI::App& cli, int& status) {
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command
-      .add_option("--visibility", arguments->visibility_output,
+      .add_option("--visibility-mask", arguments->visibility_output,
                   "also write the visible share of the direct light of each pixel: .exr or .png")
       ->type_name("FILE");
-  command
-      .add_option("--visibility-samples", arguments->visibility_samples, "light samples per pixel")
+  command.add_option("--mask-samples", arguments->visibility_samples, "light samples per pixel")
       ->type_name("N")
       ->check(CLI::Range(1u, 1u << 24))
       ->capture_default_str();

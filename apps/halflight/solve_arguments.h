@@ -17,6 +17,7 @@ struct SolveArguments {
   std::string error = "5%";
   std::string time;  // empty: no deadline
   std::string progress = "auto";
+  VisibilityMode visibility = VisibilityMode::multires;
   LinkMaker links = LinkMaker::sampled;
   int threads = 0;
 };

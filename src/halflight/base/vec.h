@@ -52,6 +52,10 @@ struct Bounds3f {
   Vec3 extent() const { return empty() ? Vec3(0.f) : upper - lower; }
   float diagonal() const { return glm::length(extent()); }
   float longest_side() const { return max_component(extent()); }
+  float middle_side() const {
+    const Vec3 e = extent();
+    return std::max(std::min(e.x, e.y), std::min(std::max(e.x, e.y), e.z));
+  }
   float volume() const {
     const Vec3 e = extent();
     return e.x * e.y * e.z;

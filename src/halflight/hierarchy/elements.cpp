@@ -87,6 +87,8 @@ ElementTree::ElementTree(const Geometry& geometry, const Surfaces& surfaces,
   initial_size_ = elements_.size();
   crossings_.resize(initial_size_);
   cluster_total_ = open.size();
+  cluster_elements_.resize(clusters.clusters.size());
+  for (const auto& [element, cluster] : open) cluster_elements_[cluster] = element;
   for (std::size_t i = elements_.size(); i-- > 1;) {
     const Element& e = elements_[ElementId(i)];
     elements_[e.parent].box.extend(e.box);

@@ -67,6 +67,10 @@ class ElementTree {
   // The whole-surface cell of a side; invalid when the side is not live.
   ElementId side_root(SideId side) const { return side_roots_[side]; }
 
+  // The element of a cluster of the tree that this one was made from; invalid when nothing in it
+  // is live.
+  ElementId cluster_element(std::uint32_t cluster) const { return cluster_elements_[cluster]; }
+
   // Halves a leaf cell across its longer side. Parts that hold nothing of the surface are left out,
   // so a cell may get a single child.
   void split(ElementId cell);
@@ -105,6 +109,7 @@ class ElementTree {
   IdVector<ElementId, Element> elements_;
   IdVector<ElementId, Crossing> crossings_;  // of cells
   IdVector<SideId, ElementId> side_roots_;
+  std::vector<ElementId> cluster_elements_;
   std::vector<Fragment> fragments_;
   std::vector<Vec2> fragment_corners_;
   std::size_t initial_size_ = 0, cluster_total_ = 0;

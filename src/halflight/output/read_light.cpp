@@ -49,18 +49,25 @@ std::vector<EmittingSide> find_bright_reflectors(const SolverState& state,
   return bright;
 }
 
+ReadOptions with_feature_size(ReadOptions options, float feature_size) {
+  options.direct.feature_size = feature_size;
+  return options;
+}
+
 }  // namespace
 
 SolutionReader::SolutionReader(const SolverState& state, const ReadOptions& options)
     : state_(&state),
-      options_(options),
-      emitters_(*state.world, find_emitters(*state.world)),
-      bright_(*state.world, find_bright_reflectors(state, is_bright_)),
+      options_(with_feature_size(options, state.options.feature_size)),
+      emitters_(*state.visibility, find_emitters(*state.world)),
+      bright_(*state.visibility, find_bright_reflectors(state, is_bright_)),
       irradiance_(state) {}
 
-Rgb SolutionReader::direct(const Vec3& x, const Vec3& n) const {
-  return emitters_.irradiance(x, n, options_.direct) + punctual_irradiance(*state_->world, x, n) +
-         sky_irradiance(*state_->world, x, n, options_.gather_rays, Vec2(0.5f));
+Rgb SolutionReader::direct(const Vec3& x, const Vec3& n, Vec2 shift) const {
+  return emitters_.irradiance(x, n, options_.direct, shift) +
+         punctual_irradiance(*state_->visibility, x, n, options_.direct.feature_size) +
+         sky_irradiance(*state_->visibility, x, n, options_.gather_rays, shift,
+                        options_.direct.feature_size);
 }
 
 Rgb SolutionReader::reflected_radiosity(const RayHit& hit) const {

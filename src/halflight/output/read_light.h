@@ -23,7 +23,7 @@ inline constexpr ReadOptions kMeshReading{
     .direct = {.shadow_rays = 8, .penumbra_rays = 32, .largest_group_share = 0.03f}};
 inline constexpr ReadOptions kPixelReading{
     .gather_rays = 32,
-    .direct = {.shadow_rays = 4, .penumbra_rays = 12, .largest_group_share = 0.03f}};
+    .direct = {.shadow_rays = 8, .penumbra_rays = 24, .largest_group_share = 0.03f}};
 
 class SolutionReader {
  public:
@@ -33,8 +33,10 @@ class SolutionReader {
   Reading read(const ReadingPoint& point) const;
   std::vector<Reading> operator()(std::span<const ReadingPoint> points) const;  // in parallel
 
-  // Emitting surfaces, punctual lights and sky.
-  Rgb direct(const Vec3& x, const Vec3& n) const;
+  // Emitting surfaces, punctual lights and sky. Different shifts put shadow rays elsewhere: a
+  // pixel's samples each have their own, the same for all pixels, so that steps in penumbrae
+  // average out and no noise comes in.
+  Rgb direct(const Vec3& x, const Vec3& n, Vec2 shift = Vec2(0.5f)) const;
   // Solved radiosity less emission of what a ray has hit.
   Rgb reflected_radiosity(const RayHit& hit) const;
 

@@ -26,10 +26,23 @@ json input(const SolverState& state) {
           {"bounds", {rgb(g.bounds.lower), rgb(g.bounds.upper)}}};
 }
 
+const char* name_of(VisibilityMode mode) {
+  switch (mode) {
+    case VisibilityMode::average:
+      return "average";
+    case VisibilityMode::multires:
+      return "multires";
+    case VisibilityMode::exact:
+      break;
+  }
+  return "exact";
+}
+
 json settings(const SolverState& state) {
   return {{"feature_size", state.options.feature_size},
           {"error", state.options.error},
           {"links", state.options.links == LinkMaker::refined ? "refined" : "sampled"},
+          {"visibility", name_of(state.visibility->mode())},
           {"passes", state.options.passes},
           {"sky", rgb(state.world->scene.sky)},
           {"threads", thread_count()},
@@ -88,7 +101,12 @@ std::string Report::json(const SolverState& state) const {
   report["peak_rss_bytes"] = peak_rss_bytes();
   int sweeps = 0;
   for (const PassRecord& p : state.history) sweeps += p.sweeps;
-  report["rays"] = {{"exact", state.world->rays.ray_total()}, {"multi_resolution", 0}};
+  const std::uint64_t through_clusters = state.visibility->ray_total();
+  report["rays"] = {
+      {"exact", state.world->rays.ray_total()},
+      {"multi_resolution", through_clusters},
+      {"nodes_per_ray", static_cast<double>(state.visibility->node_total()) /
+                            static_cast<double>(std::max<std::uint64_t>(1, through_clusters))}};
   report["clusters"] = state.tree.cluster_total();
   report["elements"] = state.tree.size();
   report["links"] = state.links.size();

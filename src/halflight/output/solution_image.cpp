@@ -9,6 +9,8 @@ namespace halflight {
 namespace {
 
 constexpr std::size_t kRowsPerReport = 16;
+constexpr int kMostPanes = 32;
+constexpr float kOpaque = 1e-3f;  // what is seen through less is not seen
 
 // The lit triangles that show one side of the surfaces, ready to be found by rays.
 class LitSide {
@@ -66,19 +68,34 @@ Image solution_image(const SolverState& state, const SolutionReader& reader, con
   const Scene search = opaque_scene();
   const LitSide front(search, mesh, false), back(search, mesh, true);
 
-  const auto radiance = [&](const CameraRay& ray, std::uint64_t seed) {
-    const auto hit = world.rays.closest_hit(ray.origin, ray.direction, kInfinity, seed);
-    if (!hit) return world.scene.sky;
-    const Vec3 x = hit_position(world.geometry, *hit), n = hit_normal(world.geometry, *hit);
-    const auto indirect = (hit->front ? front : back).indirect(x, n);
-    const Rgb irradiance = indirect ? reader.direct(x, n) + *indirect
-                                    : reader.read({x, n, hit->triangle}).irradiance();
-    Rgb result = reflectance_at(world.scene, world.geometry, hit->triangle, hit->barycentric) *
+  const auto leaving = [&](const RayHit& hit, Vec2 shift) {
+    const Vec3 x = hit_position(world.geometry, hit), n = hit_normal(world.geometry, hit);
+    const auto indirect = (hit.front ? front : back).indirect(x, n);
+    const Rgb irradiance = indirect ? reader.direct(x, n, shift) + *indirect
+                                    : reader.read({x, n, hit.triangle}).irradiance();
+    Rgb result = reflectance_at(world.scene, world.geometry, hit.triangle, hit.barycentric) *
                  irradiance / kPi;
-    const Material& m = world.scene.materials[world.geometry.materials[hit->triangle]];
-    if (hit->front || m.double_sided)
-      result += emission_at(world.scene, world.geometry, hit->triangle, hit->barycentric);
+    const Material& m = world.scene.materials[world.geometry.materials[hit.triangle]];
+    if (hit.front || m.double_sided)
+      result += emission_at(world.scene, world.geometry, hit.triangle, hit.barycentric);
     return result;
+  };
+  // Panes of glass one behind the other each add their share.
+  const auto radiance = [&](const CameraRay& ray, Vec2 shift) {
+    Rgb sum(0.f);
+    float left = 1.f;  // share of what lies behind that is seen
+    Vec3 origin = ray.origin;
+    for (int pane = 0; pane < kMostPanes && left > kOpaque; ++pane) {
+      const auto hit = world.rays.first_surface(origin, ray.direction, kInfinity);
+      if (!hit) return sum + left * world.scene.sky;
+      const float opacity =
+          opacity_at(world.scene, world.geometry, hit->triangle, hit->barycentric);
+      sum += left * opacity * leaving(*hit, shift);
+      left *= 1.f - opacity;
+      origin =
+          world.rays.lift(hit_position(world.geometry, *hit), -hit_normal(world.geometry, *hit));
+    }
+    return sum;
   };
 
   Image image(width, height);
@@ -91,9 +108,10 @@ Image solution_image(const SolverState& state, const SolutionReader& reader, con
       const std::size_t row = pixel / columns;
       const Vec2 corner(static_cast<float>(pixel % columns), static_cast<float>(row));
       Rgb sum(0.f);
-      for (int k = 0; k < samples_per_pixel; ++k)
-        sum += radiance(camera.through(corner + r2_sequence(static_cast<std::uint32_t>(k))),
-                        hash(pixel, k));
+      for (int k = 0; k < samples_per_pixel; ++k) {
+        const Vec2 shift = r2_sequence(static_cast<std::uint32_t>(k));
+        sum += radiance(camera.through(corner + shift), shift);
+      }
       image.pixels[pixel] = sum / static_cast<float>(samples_per_pixel);
     });
     progress.report("picture",

@@ -25,7 +25,7 @@ struct Context : RTCIntersectContext {
   const Geometry* geometry;
   const TriangleId* triangles;  // of the transparent mesh, by primitive id
   float transmittance = 1.f;
-  std::uint64_t seed = 0;
+  std::optional<std::uint64_t> seed;  // none: nothing passes
 };
 
 // Shadow rays: weaken and pass on until the ray is as good as blocked.
@@ -38,14 +38,15 @@ void attenuate(const RTCFilterFunctionNArguments* args) {
   if (context->transmittance >= kOpaque) args->valid[0] = 0;
 }
 
-// Path rays: pass with probability 1 - opacity.
+// Path rays: pass with probability 1 - opacity, without a seed only where the opacity is 0.
 void pass_by_chance(const RTCFilterFunctionNArguments* args) {
   auto* context = static_cast<Context*>(args->context);
   if (args->valid[0] != -1) return;
   const TriangleId t = context->triangles[RTCHitN_primID(args->hit, 1, 0)];
   const Vec2 barycentric(RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0));
   const float opacity = opacity_at(*context->scene, *context->geometry, t, barycentric);
-  if (to_unit_float(hash(context->seed, t.value)) >= opacity) args->valid[0] = 0;
+  const float chance = context->seed ? to_unit_float(hash(*context->seed, t.value)) : 0.f;
+  if (chance >= opacity) args->valid[0] = 0;
 }
 
 }  // namespace
@@ -55,7 +56,7 @@ struct RayScene::Impl {
   RTCScene scene = nullptr;
   const Scene* source = nullptr;
   const Geometry* geometry = nullptr;
-  Counter rays;
+  mutable Counter rays;
   // Embree geometry 0 holds the opaque triangles, 1 those that may let light through.
   std::array<std::vector<TriangleId>, 2> triangles;
 
@@ -83,8 +84,11 @@ struct RayScene::Impl {
     rtcReleaseGeometry(mesh);
   }
 
-  Context context(std::uint64_t seed) const {
-    Context c;
+  std::optional<RayHit> intersect(const Vec3& origin, const Vec3& direction, float max_distance,
+                                  std::optional<std::uint64_t> seed) const;
+
+  Context make_context(std::optional<std::uint64_t> seed) const {
+    Context c{};
     rtcInitIntersectContext(&c);
     c.scene = source;
     c.geometry = geometry;
@@ -111,6 +115,25 @@ RTCRay make_ray(const Vec3& origin, const Vec3& direction, float far) {
 }
 
 }  // namespace
+
+std::optional<RayHit> RayScene::Impl::intersect(const Vec3& origin, const Vec3& direction,
+                                                float max_distance,
+                                                std::optional<std::uint64_t> seed) const {
+  rays.add();
+  Context context = make_context(seed);
+  RTCRayHit query{};
+  query.ray = make_ray(origin, direction, max_distance);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  RayHit hit;
+  hit.triangle = triangles[query.hit.geomID][query.hit.primID];
+  hit.barycentric = {query.hit.u, query.hit.v};
+  hit.distance = query.ray.tfar;
+  const Vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+  hit.front = glm::dot(normal, direction) < 0.f;
+  return hit;
+}
 
 RayScene::RayScene(const Scene& scene, const Geometry& geometry) : impl_(std::make_unique<Impl>()) {
   _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
@@ -140,7 +163,7 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 float RayScene::transmittance(const Vec3& from, const Vec3& to) const {
   impl_->rays.add();
-  Context context = impl_->context(0);
+  Context context = impl_->make_context(0);
   RTCRay ray = make_ray(from, to - from, 1.f);
   rtcOccluded1(impl_->scene, &context, &ray);
   return ray.tfar < 0.f ? 0.f : context.transmittance;
@@ -148,7 +171,7 @@ float RayScene::transmittance(const Vec3& from, const Vec3& to) const {
 
 float RayScene::transmittance_to_sky(const Vec3& from, const Vec3& direction) const {
   impl_->rays.add();
-  Context context = impl_->context(0);
+  Context context = impl_->make_context(0);
   RTCRay ray = make_ray(from, direction, kInfinity);
   rtcOccluded1(impl_->scene, &context, &ray);
   return ray.tfar < 0.f ? 0.f : context.transmittance;
@@ -156,20 +179,12 @@ float RayScene::transmittance_to_sky(const Vec3& from, const Vec3& direction) co
 
 std::optional<RayHit> RayScene::closest_hit(const Vec3& origin, const Vec3& direction,
                                             float max_distance, std::uint64_t seed) const {
-  impl_->rays.add();
-  Context context = impl_->context(seed);
-  RTCRayHit query{};
-  query.ray = make_ray(origin, direction, max_distance);
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(impl_->scene, &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  RayHit hit;
-  hit.triangle = impl_->triangles[query.hit.geomID][query.hit.primID];
-  hit.barycentric = {query.hit.u, query.hit.v};
-  hit.distance = query.ray.tfar;
-  const Vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
-  hit.front = glm::dot(normal, direction) < 0.f;
-  return hit;
+  return impl_->intersect(origin, direction, max_distance, seed);
+}
+
+std::optional<RayHit> RayScene::first_surface(const Vec3& origin, const Vec3& direction,
+                                              float max_distance) const {
+  return impl_->intersect(origin, direction, max_distance, std::nullopt);
 }
 
 std::vector<TriangleId> RayScene::triangles_near(const Vec3& point, float radius) const {

@@ -45,6 +45,9 @@ class RayScene {
   // by a hash of the seed and the triangle, so that the answer is repeatable.
   std::optional<RayHit> closest_hit(const Vec3& origin, const Vec3& direction, float max_distance,
                                     std::uint64_t seed) const;
+  // Nearest surface, however little of the light it stops.
+  std::optional<RayHit> first_surface(const Vec3& origin, const Vec3& direction,
+                                      float max_distance) const;
 
   // Triangles that come within `radius` of the point, and perhaps a few more; in rising order.
   std::vector<TriangleId> triangles_near(const Vec3& point, float radius) const;

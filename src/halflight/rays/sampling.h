@@ -38,4 +38,10 @@ inline Vec3 cosine_hemisphere(Vec2 u) {
   return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.f, 1.f - u.x))};
 }
 
+// Direction uniform over the sphere.
+inline Vec3 uniform_sphere(Vec2 u) {
+  const float z = 1.f - 2.f * u.x, r = std::sqrt(std::max(0.f, 1.f - z * z)), phi = 2.f * kPi * u.y;
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
 }  // namespace halflight

@@ -13,6 +13,8 @@ constexpr int kSkyRays = 16;  // of each point
 constexpr DirectLightOptions kCellDirectLight{
     .shadow_rays = 8, .penumbra_rays = 8, .largest_group_share = 0.05f, .smallest_angle = 0.01f};
 
+constexpr float kFinestCell = 1e-3f;  // of the scene's diagonal, whatever the feature size
+
 // Streams of samples: to decide with, and to keep.
 constexpr std::uint64_t kPilot = 1, kKept = 2;
 
@@ -33,7 +35,10 @@ bool is_buried(const SolverState& state, const Vec3& x, const Vec3& n, std::uint
 GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uint64_t stream,
                               const EmitterTree* emitters) {
   const Vec3 n = state.tree.normal(cell);
-  const bool whole_and_small = state.tree.cell_size(cell) < state.options.feature_size;
+  const float s = state.options.feature_size;
+  DirectLightOptions options = kCellDirectLight;
+  options.feature_size = s;
+  const bool whole_and_small = state.tree.cell_size(cell) < 2.f * smallest_cell(state);
   const std::uint32_t samples = whole_and_small ? 1 : kPointsOfCell;
   GivenLight result;
   float sum = 0.f, squares = 0.f;
@@ -43,12 +48,12 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uin
     const Vec3 x = state.tree.sample(cell, r2_sequence(k, shift)).position;
     if (is_buried(state, x, n, hash(cell.value, k, stream, 17))) continue;
     count += 1.f;
-    Rgb e = punctual_irradiance(*state.world, x, n) +
-            sky_irradiance(*state.world, x, n, kSkyRays, random_shift(hash(cell.value, k, stream)));
+    Rgb e = punctual_irradiance(*state.visibility, x, n, s) +
+            sky_irradiance(*state.visibility, x, n, kSkyRays,
+                           random_shift(hash(cell.value, k, stream)), s);
     result.outer += e;
     if (emitters)
-      e += emitters->irradiance(x, n, kCellDirectLight,
-                                random_shift(hash(cell.value, k, stream, 13)));
+      e += emitters->irradiance(x, n, options, random_shift(hash(cell.value, k, stream, 13)));
     result.mean += e;
     sum += average(e);
     squares += average(e) * average(e);
@@ -62,6 +67,11 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uin
 }
 
 }  // namespace
+
+float smallest_cell(const SolverState& state) {
+  const float finest = kFinestCell * state.world->geometry.bounds.diagonal();
+  return std::max(0.5f * state.options.feature_size, finest);
+}
 
 void evaluate_material(SolverState& state, ElementId cell) {
   const ElementTree& tree = state.tree;
@@ -113,6 +123,28 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   });
 }
 
+void give_light_to_clusters(SolverState& state, const EmitterTree& emitters,
+                            const std::vector<ElementId>& receivers,
+                            const SampledLinkOptions& options) {
+  parallel_for(receivers.size(), 16, [&](std::size_t i) {
+    const ElementTree& tree = state.tree;
+    if (!tree[receivers[i]].is_cluster()) return;
+    const DirectLight light =
+        sample_direct_light(tree, *state.visibility, emitters, receivers[i], options);
+    std::vector<ElementId> open{receivers[i]};
+    while (!open.empty()) {
+      const ElementId e = open.back();
+      open.pop_back();
+      for (const ElementId child : tree[e].children()) open.push_back(child);
+      if (tree[e].is_cluster() || !tree[e].is_leaf()) continue;
+      const Rgb outer = light.from_outside.irradiance(tree.normal(e));
+      state.given_light[e] = light.of_emitters.irradiance(tree.normal(e)) + outer;
+      if (!state.outer_light.empty()) state.outer_light[e] = outer;
+      state.given_light_known[e] = 1;
+    }
+  });
+}
+
 void update_given_light(SolverState& state, float irradiance_threshold,
                         const EmitterTree* emitters) {
   if (!has_outer_light(*state.world) && !emitters) return;
@@ -128,7 +160,7 @@ void update_given_light(SolverState& state, float irradiance_threshold,
     parallel_for(open.size(), 16, [&](std::size_t i) {
       const ElementId e = open[i];
       // As with links: what is kept had no say in whether to split (transport/refine.cpp).
-      if (state.tree.cell_size(e) > state.options.feature_size) {
+      if (state.tree.cell_size(e) > 2.f * smallest_cell(state)) {
         const GivenLight pilot = sample_given_light(state, e, kPilot, emitters);
         const float error = pilot.deviation * std::sqrt(state.tree[e].area / scene_area);
         uneven[i] = error > state.tolerance[e] * irradiance_threshold;

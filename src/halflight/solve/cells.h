@@ -5,14 +5,24 @@
 
 #include "halflight/solve/solver.h"
 #include "halflight/transport/emitter_tree.h"
+#include "halflight/transport/sampled_links.h"
 
 namespace halflight {
+
+// Cells are not split below this size, metres: half the feature size.
+float smallest_cell(const SolverState& state);
 
 // Mean reflectance and exitance of a cell, textures sampled over its area.
 void evaluate_material(SolverState& state, ElementId cell);
 
 // Gives new children the light of their split parent and their own material.
 void inherit(SolverState& state, const std::vector<ElementId>& split_cells);
+
+// Evaluates the light that sampled links do not carry on the cells of receiving clusters, by one
+// directional irradiance for each cluster.
+void give_light_to_clusters(SolverState& state, const EmitterTree& emitters,
+                            const std::vector<ElementId>& receivers,
+                            const SampledLinkOptions& options);
 
 // Evaluates the light that links do not carry on all leaf cells where it is not known yet, and
 // splits cells on which it varies by more than the threshold (as in RefineOptions). `emitters` adds

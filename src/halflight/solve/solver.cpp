@@ -10,6 +10,7 @@
 #include "halflight/transport/emitter_tree.h"
 #include "halflight/transport/outer_light.h"
 #include "halflight/transport/sampled_links.h"
+#include "halflight/visibility/pilot.h"
 
 namespace halflight {
 namespace {
@@ -26,6 +27,18 @@ constexpr int kMostSweeps = 60;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::shared_ptr<const Visibility> choose_visibility(const std::shared_ptr<const World>& world,
+                                                    const Surfaces& surfaces,
+                                                    const ClusterTree& clusters,
+                                                    const SolveOptions& options) {
+  const float s = options.feature_size;
+  const bool exact = options.visibility == VisibilityMode::exact || !(s > 0.f) ||
+                     (options.visibility == VisibilityMode::multires && options.visibility_pilot &&
+                      !clusters_pay(measure_clutter(*world, s)));
+  return exact ? std::make_shared<Visibility>(*world)
+               : std::make_shared<Visibility>(*world, surfaces, clusters, options.visibility);
 }
 
 // Before any light has arrived: the emitted power spread over all that it could fall on.
@@ -77,12 +90,15 @@ std::vector<ElementPair> take_failing_links(SolverState& state, float threshold,
 
 // The elements stay; light from emitters is read exactly on each, the rest travels along rays.
 std::vector<ReceiverLink> replace_by_sampled_links(SolverState& state, float threshold) {
-  const EmitterTree emitters(*state.world, find_emitters(*state.world));
+  const EmitterTree emitters(*state.visibility, find_emitters(*state.world));
   state.emission_is_given = true;
   std::fill(state.given_light_known.begin(), state.given_light_known.end(), 0);
-  update_given_light(state, threshold, &emitters);
   SampledLinkOptions options;
+  options.feature_size = state.options.feature_size;
   options.largest_cluster = kClusterSizes * state.options.feature_size;
+  give_light_to_clusters(state, emitters, choose_receivers(state.tree, options.largest_cluster),
+                         options);
+  update_given_light(state, threshold, &emitters);
   return sample_links(state.tree, state.world->rays, state.opacity,
                       choose_receivers(state.tree, options.largest_cluster), options);
 }
@@ -94,12 +110,14 @@ SolverState make_state(const std::shared_ptr<const World>& world, const SolveOpt
   std::vector<Bounds3f> boxes(surfaces->surfaces.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = (*surfaces)[SurfaceId(i)].box;
   const auto live = find_live_sides(world->scene, world->geometry, *surfaces, world->rays);
+  const ClusterTree clusters = build_size_grid(boxes);
   SolverState state{.world = world,
                     .surfaces = surfaces,
-                    .tree = ElementTree(world->geometry, *surfaces, build_size_grid(boxes), live),
+                    .tree = ElementTree(world->geometry, *surfaces, clusters, live),
                     .options = options};
-  if (!(state.options.feature_size > 0.f))
+  if (state.options.feature_size < 0.f)
     state.options.feature_size = world->geometry.bounds.diagonal() / 200.f;
+  state.visibility = choose_visibility(world, *surfaces, clusters, state.options);
 
   const std::size_t n = state.tree.size();
   state.opacity.resize(n, 1.f);
@@ -144,18 +162,21 @@ void advance(SolverState& state, const Progress& progress) {
     pairs = take_failing_links(state, record.irradiance_threshold, links);
   RefineOptions refine_options;
   refine_options.irradiance_threshold = record.irradiance_threshold;
-  refine_options.smallest_cell = 0.5f * state.options.feature_size;
+  refine_options.feature_size = state.options.feature_size;
+  refine_options.smallest_cell = smallest_cell(state);
   refine_options.smallest_cluster = kClusterSizes * state.options.feature_size;
-  refine_options.largest_blind_cell = kBlindCells * state.options.feature_size;
+  refine_options.largest_blind_cell = 2.f * kBlindCells * smallest_cell(state);
   refine_options.most_links = state.options.most_links;
+  const bool replaced =
+      state.options.links == LinkMaker::sampled && pass + 1 == state.options.passes;
+  refine_options.shape_only = replaced;
   RefineCounts counts;
   refine(
-      state.tree, state.world->rays, state.radiosity, state.opacity, state.tolerance,
+      state.tree, *state.visibility, state.radiosity, state.opacity, state.tolerance,
       std::move(pairs), refine_options,
       [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress, links, counts);
   update_given_light(state, record.irradiance_threshold, nullptr);
-  if (state.options.links == LinkMaker::sampled && pass + 1 == state.options.passes)
-    links = replace_by_sampled_links(state, record.irradiance_threshold);
+  if (replaced) links = replace_by_sampled_links(state, record.irradiance_threshold);
   state.links = LinkTable(state.tree.size(), links);
   report(0.8);
   record.refine_seconds = seconds_since(start);

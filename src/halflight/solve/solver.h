@@ -10,6 +10,7 @@
 #include "halflight/rays/world.h"
 #include "halflight/transport/link.h"
 #include "halflight/transport/refine.h"
+#include "halflight/visibility/visibility.h"
 
 namespace halflight {
 
@@ -19,8 +20,14 @@ enum class LinkMaker {
 };
 
 struct SolveOptions {
-  float feature_size = 0.f;  // s, metres: smallest shadow kept exact; 0: scene diagonal / 200
-  float error = 0.05f;       // aimed-at relative RMS error of irradiance
+  // s, metres: smallest shadow kept exact. Negative: scene diagonal / 200. 0: all shadows are
+  // exact, and only the error decides how fine elements get.
+  float feature_size = -1.f;
+  // Multires gives way to exact rays where a pilot says that clusters would save nothing; the
+  // state's visibility tells what is used.
+  VisibilityMode visibility = VisibilityMode::multires;
+  bool visibility_pilot = true;
+  float error = 0.05f;  // aimed-at relative RMS error of irradiance
   LinkMaker links = LinkMaker::sampled;
   int passes = 3;  // settings of the threshold, coarse to fine
   std::size_t most_links = 40'000'000;
@@ -41,6 +48,7 @@ struct PassRecord {
 struct SolverState {
   std::shared_ptr<const World> world;
   std::shared_ptr<const Surfaces> surfaces;
+  std::shared_ptr<const Visibility> visibility{};
   ElementTree tree;
   SolveOptions options;  // resolved: no zeros that stand for defaults
 

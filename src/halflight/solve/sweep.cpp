@@ -125,13 +125,15 @@ void pull(SolverState& state) {
   for (std::size_t i = tree.size(); i-- > 0;) {
     const ElementId e(i);
     if (tree[e].is_leaf()) continue;
-    Rgb power(0.f);
+    Rgb power(0.f), emitted(0.f);
     float area = 0.f;
     for (const ElementId child : tree[e].children()) {
       power += tree[child].area * state.radiosity[child];
+      emitted += tree[child].area * state.exitance[child];
       area += tree[child].area;
     }
     state.radiosity[e] = power / std::max(area, 1e-30f);
+    state.exitance[e] = emitted / std::max(area, 1e-30f);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "halflight/hierarchy/bodies.h"
 #include "halflight/rays/sampling.h"
 #include "halflight/rays/spherical_triangle.h"
 #include "halflight/transport/form_factor.h"
@@ -17,6 +18,8 @@ constexpr int kRaysToJudgeBy = 8;
 constexpr float kLargeView = 2e-3f;
 // From this many times its size away a triangle's form factor is that of its middle, to 1 %.
 constexpr float kFar = 5.f;
+// Rays disagree when their visibilities spread by more than this.
+constexpr float kMixed = 0.1f;
 // Places of a triangle looked at, however few rays go there.
 constexpr int kLeastPlaces = 8;
 // Directions below the horizon keep this much of the cosine that samples follow.
@@ -72,20 +75,42 @@ std::vector<EmittingSide> find_emitters(const World& world) {
   return emitters;
 }
 
-EmitterTree::EmitterTree(const World& world, std::vector<EmittingSide> emitters)
-    : world_(&world), emitters_(std::move(emitters)) {
+EmitterTree::EmitterTree(const Visibility& visibility, std::vector<EmittingSide> emitters)
+    : visibility_(&visibility), world_(&visibility.world()), emitters_(std::move(emitters)) {
   if (emitters_.empty()) return;
   nodes_.reserve(2 * emitters_.size());
   build(0, static_cast<std::uint32_t>(emitters_.size()));
   float sum = 0.f;
   for (const EmittingSide& e : emitters_) {
     cumulative_power_.push_back(sum += e.power);
-    const auto [a, b, c] = world.geometry.corners(e.triangle);
+    const auto [a, b, c] = world_->geometry.corners(e.triangle);
     const Vec3 middle = (a + b + c) / 3.f;
     const float size = 2.f * std::max({glm::distance(a, middle), glm::distance(b, middle),
                                        glm::distance(c, middle)});
-    shapes_.push_back({middle, normal_of(e), size});
+    shapes_.push_back({middle, normal_of(e), size, 0.f});
   }
+  if (visibility.mode() != VisibilityMode::exact) find_widths();
+}
+
+// A lamp of many triangles throws the shadows of the lamp, not those of its triangles.
+void EmitterTree::find_widths() {
+  const Bodies bodies = find_bodies(world_->geometry);
+  IdVector<BodyId, Bounds3f> boxes(bodies.members.size());
+  for (const EmittingSide& e : emitters_)
+    for (const Vec3& p : world_->geometry.corners(e.triangle))
+      boxes[bodies.of_triangle[e.triangle]].extend(p);
+  for (std::size_t i = 0; i < emitters_.size(); ++i)
+    shapes_[i].width = boxes[bodies.of_triangle[emitters_[i].triangle]].middle_side();
+}
+
+// Share of the light from y on an emitter that arrives.
+float EmitterTree::seen(std::uint32_t emitter, const Vec3& from, const Vec3& y,
+                        float feature_size) const {
+  const Shape& shape = shapes_[emitter];
+  const Vec3 to = world_->rays.lift(y, shape.normal);
+  if (!(feature_size > 0.f)) return world_->rays.transmittance(from, to);
+  const float cosine = glm::dot(glm::normalize(from - to), shape.normal);
+  return visibility_->transmittance({from, to, feature_size, shape.width * std::abs(cosine)});
 }
 
 Vec3 EmitterTree::normal_of(const EmittingSide& e) const {
@@ -200,7 +225,7 @@ std::vector<EmitterTree::CutNode> EmitterTree::choose_cut(const Vec3& x, const V
 
 // The closed form carries the kernel; rays carry its visible share, weighted by the kernel.
 Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3& n, int rays,
-                               int more_rays, Vec2 shift) const {
+                               int more_rays, Vec2 shift, float feature_size) const {
   const Geometry& g = world_->geometry;
   const EmittingSide& e = emitters_[emitter];
   const Vec3& normal = shapes_[emitter].normal;
@@ -236,7 +261,7 @@ Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3&
     return Place{b, std::max(0.f, glm::dot(n, w)) / warped.density};
   };
 
-  float kernel_sum = 0.f, seen_sum = 0.f;
+  float kernel_sum = 0.f, seen_sum = 0.f, squares = 0.f;
   Rgb seen_radiance(0.f);
   // Few rays each choose among several places in proportion to the kernel: where most light comes
   // from counts as it should, and none is lost by a place below the horizon.
@@ -264,21 +289,24 @@ Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3&
       const auto [b, kernel] = choose_one(taken);
       if (!(kernel > 0.f)) continue;
       kernel_sum += kernel;
-      const float seen =
-          kernel * world_->rays.transmittance(from, world_->rays.lift(at(b), normal));
-      seen_sum += seen;
+      const float visible = kernel * seen(emitter, from, at(b), feature_size);
+      seen_sum += visible;
+      squares += visible * visible / kernel;
       seen_radiance +=
-          seen * (e.textured ? emission_at(world_->scene, g, e.triangle, b) : e.radiance);
+          visible * (e.textured ? emission_at(world_->scene, g, e.triangle, b) : e.radiance);
     }
   };
   shoot(rays);
-  const bool mixed = seen_sum > 1e-4f * kernel_sum && seen_sum < 0.9999f * kernel_sum;
+  // Exact rays say all or nothing; clusters answer with shares that may agree.
+  const float mean = seen_sum / std::max(kernel_sum, 1e-30f);
+  const float variance = squares / std::max(kernel_sum, 1e-30f) - mean * mean;
+  const bool mixed = variance > kMixed * kMixed;
   if (mixed && rays >= kRaysToJudgeBy && more_rays > rays) shoot(more_rays);
   return kernel_sum > 0.f ? kPi * form_factor * seen_radiance / kernel_sum : Rgb(0.f);
 }
 
-Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int rays,
-                            Vec2 shift) const {
+Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int rays, Vec2 shift,
+                            float feature_size) const {
   const Geometry& g = world_->geometry;
   const Vec3 from = world_->rays.lift(x, n);
   const float before = node.first == 0 ? 0.f : cumulative_power_[node.first - 1];
@@ -290,21 +318,53 @@ Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int 
     const float stratum = (static_cast<float>(k) + shift.x) / static_cast<float>(rays);
     const auto found = std::upper_bound(begin, begin + node.count, before + stratum * node.power);
     const auto offset = std::min<std::ptrdiff_t>(found - begin, node.count - 1);
-    const EmittingSide& e = emitters_[node.first + static_cast<std::uint32_t>(offset)];
+    const std::uint32_t index = node.first + static_cast<std::uint32_t>(offset);
+    const EmittingSide& e = emitters_[index];
     const auto corner = g.corners(e.triangle);
     const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(k), point_shift));
     const Vec3 y = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
-    const Vec3 normal = normal_of(e), between = y - x;
+    const Vec3 between = y - x;
     const float squared = glm::dot(between, between);
-    const float cosines =
-        std::max(0.f, glm::dot(n, between)) * std::max(0.f, -glm::dot(normal, between));
+    const float cosines = std::max(0.f, glm::dot(n, between)) *
+                          std::max(0.f, -glm::dot(shapes_[index].normal, between));
     if (!(cosines > 0.f)) continue;
     // Chosen with density power / (area * node power): radiance / density, colour kept.
     const Rgb colour = e.radiance / average(e.radiance);
-    sum += colour * (node.power * cosines / (squared * squared) *
-                     world_->rays.transmittance(from, world_->rays.lift(y, normal)));
+    sum +=
+        colour * (node.power * cosines / (squared * squared) * seen(index, from, y, feature_size));
   }
   return sum / static_cast<float>(rays);
+}
+
+std::optional<EmitterPoint> EmitterTree::choose(const Vec3& x, float radius, const Vec3& u) const {
+  if (empty()) return std::nullopt;
+  // An upper estimate of what a group sends, whichever way the receiver faces.
+  const auto estimate = [&](const Node& node) {
+    const Vec3 nearest = glm::clamp(x, node.box.lower, node.box.upper) - x;
+    const float size = std::max(radius, 0.25f * node.box.diagonal());
+    return node.power / std::max(glm::dot(nearest, nearest), size * size);
+  };
+  float choice = u.z, probability = 1.f;
+  std::uint32_t index = 0;
+  while (nodes_[index].right != 0) {
+    const std::uint32_t left = index + 1, right = nodes_[index].right;
+    const float a = estimate(nodes_[left]), b = estimate(nodes_[right]);
+    const float share = a / (a + b);
+    const bool first = choice < share;
+    choice = first ? choice / share : (choice - share) / (1.f - share);
+    probability *= first ? share : 1.f - share;
+    index = first ? left : right;
+  }
+  EmitterPoint point;
+  point.emitter = nodes_[index].first;
+  const EmittingSide& e = emitters_[point.emitter];
+  const auto corner = world_->geometry.corners(e.triangle);
+  const Vec2 b = uniform_triangle({u.x, u.y});
+  point.position = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
+  point.normal = shapes_[point.emitter].normal;
+  const float area = 0.5f * glm::length(world_->geometry.scaled_normal(e.triangle));
+  point.power = e.radiance * (area / probability);
+  return point;
 }
 
 Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options,
@@ -323,9 +383,9 @@ Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptio
     };
     if (node.right == 0)
       sum += from_triangle(node.first, x, n, rays_for(options.shadow_rays),
-                           rays_for(options.penumbra_rays), shift);
+                           rays_for(options.penumbra_rays), shift, options.feature_size);
     else
-      sum += from_group(node, x, n, rays_for(options.penumbra_rays), shift);
+      sum += from_group(node, x, n, rays_for(options.penumbra_rays), shift, options.feature_size);
   }
   return sum;
 }

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "halflight/base/vec.h"
-#include "halflight/rays/world.h"
+#include "halflight/visibility/visibility.h"
 
 namespace halflight {
 
@@ -17,6 +18,7 @@ struct DirectLightOptions {
   // is seen under at most this angle (size / distance).
   float largest_group_share = 0.01f;
   float smallest_angle = 0.01f;
+  float feature_size = 0.f;  // of shadows that count, metres; 0: all
 };
 
 // One side of a triangle that shines with a radiance of its own.
@@ -31,9 +33,18 @@ struct EmittingSide {
 // All emitting sides of the scene's triangles.
 std::vector<EmittingSide> find_emitters(const World& world);
 
+// A place on an emitter, chosen at random.
+struct EmitterPoint {
+  std::uint32_t emitter = 0;
+  Vec3 position{0.f};
+  Vec3 normal{0.f, 1.f, 0.f};  // unit, of the side that shines
+  Rgb power{0.f};              // radiance over the density with which it was chosen, W/sr
+};
+
 class EmitterTree {
  public:
-  EmitterTree(const World& world, std::vector<EmittingSide> emitters);
+  // Refers to the visibility.
+  EmitterTree(const Visibility& visibility, std::vector<EmittingSide> emitters);
   bool empty() const { return emitters_.empty(); }
 
   // Irradiance at x with unit normal n from all emitting surfaces, shadows by exact rays. With the
@@ -41,6 +52,12 @@ class EmitterTree {
   // different shifts make estimates that average out.
   Rgb irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options,
                  Vec2 shift = Vec2(0.5f)) const;
+
+  // Chooses a place to light something at x of the given radius, about in proportion to what it
+  // sends there; u in [0, 1)^3. None: nothing can.
+  std::optional<EmitterPoint> choose(const Vec3& x, float radius, const Vec3& u) const;
+  // Share of the light from a place on an emitter that arrives at a point (lifted off its surface).
+  float seen(std::uint32_t emitter, const Vec3& from, const Vec3& y, float feature_size) const;
 
  private:
   struct Node {
@@ -56,20 +73,24 @@ class EmitterTree {
     float expected = 0.f;  // unoccluded irradiance, roughly
   };
 
+  void find_widths();
   std::uint32_t build(std::uint32_t first, std::uint32_t count);
   bool cannot_light(const Node& node, const Vec3& x, const Vec3& n) const;
   float expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const;
   std::vector<CutNode> choose_cut(const Vec3& x, const Vec3& n, const DirectLightOptions&) const;
   Vec3 normal_of(const EmittingSide& e) const;
   Rgb from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3& n, int rays, int more_rays,
-                    Vec2 shift) const;
-  Rgb from_group(const Node& node, const Vec3& x, const Vec3& n, int rays, Vec2 shift) const;
+                    Vec2 shift, float feature_size) const;
+  Rgb from_group(const Node& node, const Vec3& x, const Vec3& n, int rays, Vec2 shift,
+                 float feature_size) const;
 
   struct Shape {
     Vec3 middle, normal;
-    float size = 0.f;  // diameter about the middle
+    float size = 0.f;   // diameter about the middle
+    float width = 0.f;  // smallest of the whole emitter that it is a part of, roughly
   };
 
+  const Visibility* visibility_;
   const World* world_;
   std::vector<EmittingSide> emitters_;
   std::vector<Shape> shapes_;            // of each emitter

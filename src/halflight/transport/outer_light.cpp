@@ -4,7 +4,9 @@
 #include "halflight/scene/punctual_light.h"
 
 namespace halflight {
-Rgb punctual_irradiance(const World& world, const Vec3& x, const Vec3& n) {
+Rgb punctual_irradiance(const Visibility& visibility, const Vec3& x, const Vec3& n,
+                        float feature_size) {
+  const World& world = visibility.world();
   Rgb sum(0.f);
   const Vec3 from = world.rays.lift(x, n);
   for (const PunctualLight& light : world.geometry.lights) {
@@ -14,21 +16,24 @@ Rgb punctual_irradiance(const World& world, const Vec3& x, const Vec3& n) {
     const float cosine = glm::dot(n, towards);
     if (cosine <= 0.f) continue;
     const float visible = light.kind == Light::Kind::directional
-                              ? world.rays.transmittance_to_sky(from, towards)
-                              : world.rays.transmittance(from, light.position);
+                              ? visibility.transmittance_to_sky(from, towards, feature_size, 0.f)
+                              : visibility.transmittance({from, light.position, feature_size, 0.f});
     sum += visible * cosine * e;
   }
   return sum;
 }
 
-Rgb sky_irradiance(const World& world, const Vec3& x, const Vec3& n, int samples, Vec2 shift) {
+Rgb sky_irradiance(const Visibility& visibility, const Vec3& x, const Vec3& n, int samples,
+                   Vec2 shift, float feature_size) {
+  const World& world = visibility.world();
   if (!(max_component(world.scene.sky) > 0.f)) return Rgb(0.f);
   const Frame frame = Frame::from_normal(n);
   const Vec3 from = world.rays.lift(x, n);
+  const float angle = std::sqrt(2.f * kPi / static_cast<float>(samples));  // between rays
   float open = 0.f;
   for (int k = 0; k < samples; ++k) {
     const Vec3 w = cosine_hemisphere(r2_sequence(static_cast<std::uint32_t>(k), shift));
-    open += world.rays.transmittance_to_sky(from, frame.to_world(w));
+    open += visibility.transmittance_to_sky(from, frame.to_world(w), feature_size, angle);
   }
   return kPi * world.scene.sky * (open / static_cast<float>(samples));
 }

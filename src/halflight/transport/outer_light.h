@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "halflight/base/vec.h"
-#include "halflight/rays/world.h"
+#include "halflight/visibility/visibility.h"
 
 namespace halflight {
 
@@ -12,11 +12,14 @@ inline bool has_outer_light(const World& world) {
   return !world.geometry.lights.empty() || max_component(world.scene.sky) > 0.f;
 }
 
-// Irradiance at a point with unit normal n from point, spot and directional lights, shadows by one
-// exact ray each (KHR_lights_punctual: candela / r^2, lux; range and cones as recommended there).
-Rgb punctual_irradiance(const World& world, const Vec3& x, const Vec3& n);
+// Irradiance at a point with unit normal n from point, spot and directional lights, shadows
+// of at least the feature size by one ray each (KHR_lights_punctual: candela / r^2, lux; range and
+// cones as recommended there).
+Rgb punctual_irradiance(const Visibility& visibility, const Vec3& x, const Vec3& n,
+                        float feature_size);
 
-// Irradiance from the sky seen through `samples` cosine-distributed exact rays.
-Rgb sky_irradiance(const World& world, const Vec3& x, const Vec3& n, int samples, Vec2 shift);
+// Irradiance from the sky seen through `samples` cosine-distributed rays.
+Rgb sky_irradiance(const Visibility& visibility, const Vec3& x, const Vec3& n, int samples,
+                   Vec2 shift, float feature_size);
 
 }  // namespace halflight

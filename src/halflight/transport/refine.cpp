@@ -40,6 +40,7 @@ class Oracle {
   Verdict judge(ElementId r, ElementId s) const {
     const ElementTree& tree = scene_.tree;
     if (r != s && back_facing(tree, r, s)) return {};
+    if (options_.shape_only && r != s && !can_split(r)) return {};
     const float radiosity = average(scene_.radiosity[s]);
     const TransferBounds bounds = bound_transfer(tree, r, s);
     if (!(radiosity > 0.f)) {
@@ -82,6 +83,7 @@ class Oracle {
   // again: whoever accepts a pair because its samples agree, and keeps those samples,
   // systematically loses what they missed.
   Verdict accept(ElementId r, ElementId s, int samples, const TransferBounds& bounds) const {
+    if (options_.shape_only) return {};
     const bool cells = !scene_.tree[r].is_cluster() && !scene_.tree[s].is_cluster();
     const TransferEstimate t = bounds.touching && !cells
                                    ? estimate_touching_transfer(scene_, r, s, samples, kFinal)
@@ -154,10 +156,10 @@ void append_finer_pairs(const ElementTree& tree, const ElementPair& pair, Verdic
 
 }  // namespace
 
-void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, Rgb>& radiosity,
-            const IdVector<ElementId, float>& opacity, const IdVector<ElementId, float>& tolerance,
-            std::vector<ElementPair> pairs, const RefineOptions& options,
-            const SplitListener& on_split, const Progress& progress,
+void refine(ElementTree& tree, const Visibility& visibility,
+            const IdVector<ElementId, Rgb>& radiosity, const IdVector<ElementId, float>& opacity,
+            const IdVector<ElementId, float>& tolerance, std::vector<ElementPair> pairs,
+            const RefineOptions& options, const SplitListener& on_split, const Progress& progress,
             std::vector<ReceiverLink>& links, RefineCounts& counts) {
   std::vector<ElementPair> batch;
   std::vector<Verdict> verdicts;
@@ -167,7 +169,7 @@ void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, R
     pairs.resize(pairs.size() - n);
     const bool accept_all = links.size() > options.most_links || progress.cancelled();
 
-    const TransferScene scene{tree, rays, radiosity, opacity};
+    const TransferScene scene{tree, visibility, options.feature_size, radiosity, opacity};
     const Oracle oracle(scene, options, tolerance, accept_all);
     verdicts.assign(n, {});
     parallel_for(n, 64, [&](std::size_t i) {

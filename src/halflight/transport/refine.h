@@ -7,7 +7,6 @@
 
 #include "halflight/base/progress.h"
 #include "halflight/hierarchy/elements.h"
-#include "halflight/rays/ray_scene.h"
 #include "halflight/transport/link.h"
 #include "halflight/transport/transfer.h"
 
@@ -19,13 +18,16 @@ struct RefineOptions {
   // tolerance: independent errors add in the square, weighted by the area they fall on, so this
   // equalises what links add to the RMS error.
   float irradiance_threshold = 0.f;
+  float feature_size = 0.f;  // of shadows that count
   // Cells are not split below this size: half the feature size (the feature gate).
   float smallest_cell = 0.f;
-  // Clusters are not opened below this diameter: what is inside is smaller than any shadow asked for,
-  // and receives and sends as one.
+  // Clusters are not opened below this diameter: what is inside is smaller than any shadow asked
+  // for, and receives and sends as one.
   float smallest_cluster = 0.f;
   // Cells larger than this are split whatever their samples say, as samples can miss a shadow.
   float largest_blind_cell = kInfinity;
+  // Only the shape of the elements is wanted: pairs are judged, cells are split, no link is made.
+  bool shape_only = false;
   std::size_t most_links = 40'000'000;  // beyond it pairs are accepted as they are, and counted
 };
 
@@ -43,10 +45,10 @@ using SplitListener = std::function<void(const std::vector<ElementId>& split_cel
 
 // Processes pairs until none is left and appends the links in a fixed order. Pairs whose source is
 // dark are kept as unsampled links. Deterministic for any thread count.
-void refine(ElementTree& tree, const RayScene& rays, const IdVector<ElementId, Rgb>& radiosity,
-            const IdVector<ElementId, float>& opacity, const IdVector<ElementId, float>& tolerance,
-            std::vector<ElementPair> pairs, const RefineOptions& options,
-            const SplitListener& on_split, const Progress& progress,
+void refine(ElementTree& tree, const Visibility& visibility,
+            const IdVector<ElementId, Rgb>& radiosity, const IdVector<ElementId, float>& opacity,
+            const IdVector<ElementId, float>& tolerance, std::vector<ElementPair> pairs,
+            const RefineOptions& options, const SplitListener& on_split, const Progress& progress,
             std::vector<ReceiverLink>& links, RefineCounts& counts);
 
 // Error of a link in irradiance at its receiver, in the units of irradiance_threshold.

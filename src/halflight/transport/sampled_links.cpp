@@ -2,12 +2,18 @@
 
 #include "halflight/base/parallel.h"
 #include "halflight/rays/sampling.h"
+#include "halflight/scene/punctual_light.h"
 
 namespace halflight {
 namespace {
 
 // Tries to find a cell of a cluster that faces a given direction.
 constexpr std::uint32_t kFacingAttempts = 16;
+
+// Angle between neighbours among n rays that share a solid angle.
+float between_rays(float solid_angle, int n) {
+  return std::sqrt(solid_angle / static_cast<float>(n));
+}
 
 // Adds what one of n rays of the receiver has met.
 struct RayTally {
@@ -84,9 +90,7 @@ void sample_cluster(const ElementTree& tree, const RayScene& rays,
   const Vec2 shift = random_shift(hash(cluster.value, 31));
   RayTally tally{links};
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
-    const Vec2 u = r2_sequence(k, shift);
-    const float z = 1.f - 2.f * u.x, r = std::sqrt(std::max(0.f, 1.f - z * z));
-    const Vec3 w(r * std::cos(2.f * kPi * u.y), r * std::sin(2.f * kPi * u.y), z);
+    const Vec3 w = uniform_sphere(r2_sequence(k, shift));
     const std::uint64_t seed = hash(cluster.value, k);
     const ElementId cell = facing_cell(tree, cluster, w, seed);
     if (!cell.valid()) continue;
@@ -99,6 +103,60 @@ void sample_cluster(const ElementTree& tree, const RayScene& rays,
 }
 
 }  // namespace
+
+DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visibility,
+                                const EmitterTree& emitters, ElementId cluster,
+                                const SampledLinkOptions& options) {
+  const World& world = visibility.world();
+  const Element& c = tree[cluster];
+  const float s = options.feature_size;
+  const auto n = static_cast<std::uint32_t>(options.shadow_rays_per_cluster);
+  const float share = 1.f / static_cast<float>(n);
+  DirectLight light;
+  // A point of the cluster that sees the direction, lifted off its cell.
+  const auto facing_point = [&](const Vec3& w, std::uint64_t seed) -> std::optional<Vec3> {
+    const ElementId cell = facing_cell(tree, cluster, w, seed);
+    if (!cell.valid()) return std::nullopt;
+    return world.rays.lift(tree.sample(cell, random_shift(seed)).position, tree.normal(cell));
+  };
+  const Vec2 shift = random_shift(hash(cluster.value, 37));
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint64_t seed = hash(cluster.value, k, 41);
+    const float choice = (static_cast<float>(k) + to_unit_float(seed)) * share;
+    const auto y =
+        emitters.choose(c.center(), 0.5f * c.diameter(), Vec3(r2_sequence(k, shift), choice));
+    if (!y) break;
+    const auto x = facing_point(glm::normalize(y->position - c.center()), seed);
+    if (!x) continue;
+    const Vec3 between = y->position - *x;
+    const float squared = glm::dot(between, between);
+    const Vec3 w = between / std::sqrt(squared);
+    const float cosine = -glm::dot(y->normal, w);
+    if (!(cosine > 0.f)) continue;
+    light.of_emitters.add(
+        w, share * cosine / squared * emitters.seen(y->emitter, *x, y->position, s) * y->power);
+  }
+  for (const PunctualLight& lamp : world.geometry.lights) {
+    const Vec3 w = direction_to(lamp, c.center());
+    const auto x = facing_point(w, hash(cluster.value, 43));
+    if (!x) continue;
+    const float visible = lamp.kind == Light::Kind::directional
+                              ? visibility.transmittance_to_sky(*x, w, s, 0.f)
+                              : visibility.transmittance({*x, lamp.position, s, 0.f});
+    light.from_outside.add(w, visible * facing_irradiance(lamp, *x));
+  }
+  if (max_component(world.scene.sky) > 0.f)
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const Vec3 w = uniform_sphere(r2_sequence(k, shift));
+      const auto x = facing_point(w, hash(cluster.value, k, 47));
+      if (!x) continue;
+      const float angle = between_rays(4.f * kPi, options.shadow_rays_per_cluster);
+      light.from_outside.add(
+          w,
+          4.f * kPi * share * visibility.transmittance_to_sky(*x, w, s, angle) * world.scene.sky);
+    }
+  return light;
+}
 
 std::vector<ElementId> choose_receivers(const ElementTree& tree, float largest_cluster) {
   std::vector<ElementId> receivers, open{tree.root()};

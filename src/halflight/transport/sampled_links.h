@@ -8,16 +8,20 @@
 #include <vector>
 
 #include "halflight/hierarchy/elements.h"
-#include "halflight/rays/ray_scene.h"
+#include "halflight/transport/emitter_tree.h"
 #include "halflight/transport/link.h"
+#include "halflight/transport/spherical_harmonics.h"
+#include "halflight/visibility/visibility.h"
 
 namespace halflight {
 
 struct SampledLinkOptions {
   int rays_per_cell = 64;
   int rays_per_cluster = 128;
+  int shadow_rays_per_cluster = 32;  // to emitters, as many to the sky, one to each punctual light
   // Clusters up to this diameter receive as one, with directional irradiance (metres).
   float largest_cluster = 0.f;
+  float feature_size = 0.f;  // of shadows in direct light that count; 0: all
 };
 
 // The cut of the tree that receives: small clusters, and leaf cells outside them.
@@ -30,5 +34,16 @@ std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& 
                                        const IdVector<ElementId, float>& opacity,
                                        const std::vector<ElementId>& receivers,
                                        const SampledLinkOptions& options);
+
+struct DirectLight {
+  DirectionalIrradiance of_emitters;
+  DirectionalIrradiance from_outside;  // punctual lights and the sky
+};
+
+// Light on a receiving cluster straight from emitters, punctual lights and the sky, as a function
+// of the normal; shadows by one ray from each of some points of the cluster.
+DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visibility,
+                                const EmitterTree& emitters, ElementId cluster,
+                                const SampledLinkOptions& options);
 
 }  // namespace halflight

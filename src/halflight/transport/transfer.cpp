@@ -99,6 +99,18 @@ TransferBounds bound_transfer(const ElementTree& tree, ElementId receiver, Eleme
   return bounds;
 }
 
+namespace {
+
+// Of the whole surface that a cell belongs to: the smaller the parts of a sender the larger their
+// own umbras, which then overlap.
+float sender_width(const ElementTree& tree, ElementId cell) {
+  const Vec2 extent =
+      tree.surfaces()[tree[cell].side].uv_upper - tree.surfaces()[tree[cell].side].uv_lower;
+  return std::min(extent.x, extent.y);
+}
+
+}  // namespace
+
 bool back_facing(const ElementTree& tree, ElementId receiver, ElementId source) {
   const Element &r = tree[receiver], &s = tree[source];
   const float flat = 1e-6f * (r.diameter() + s.diameter());
@@ -113,6 +125,8 @@ TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receive
   const auto area = [&](ElementId e) { return tree[e].area; };
   const auto power = [&](ElementId e) { return average(scene.radiosity[e]) * tree[e].area; };
 
+  const RayScene& rays = scene.visibility.world().rays;
+  const float source_width = s.box.middle_side();
   const bool to_cell = !r.is_cluster();
   const bool near_cell =
       !s.is_cluster() && distance_between(r.box, s.box) < kNearDiameters * s.diameter();
@@ -169,8 +183,10 @@ TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receive
     else
       kernel = cosine_s * (to_cell ? cosine_r : 1.f) * s.area / (kPi * squared);
     if (!(kernel > 0.f)) continue;
-    const float value = kernel * scene.rays.transmittance(scene.rays.lift(x.position, x.normal),
-                                                          scene.rays.lift(y.position, y.normal));
+    const float width = std::max(source_width, sender_width(tree, y.cell));
+    const float value = kernel * scene.visibility.transmittance({rays.lift(x.position, x.normal),
+                                                                 rays.lift(y.position, y.normal),
+                                                                 scene.feature_size, width});
     unoccluded += weight * kernel;
     sum += weight * value;
     sum_of_squares += weight * value * value;
@@ -195,6 +211,7 @@ TransferEstimate estimate_touching_transfer(const TransferScene& scene, ElementI
                                             ElementId source, int samples, std::uint64_t stream) {
   const ElementTree& tree = scene.tree;
   const auto area = [&](ElementId e) { return tree[e].area; };
+  const RayScene& rays = scene.visibility.world().rays;
   const float mean_radiosity = average(scene.radiosity[source]);
   const std::uint64_t seed = hash(receiver.value, source.value, stream);
   const Vec2 shift_x = random_shift(seed), shift_w = random_shift(hash(seed, 3));
@@ -206,8 +223,7 @@ TransferEstimate estimate_touching_transfer(const TransferScene& scene, ElementI
     const CellSample x = sample_element(tree, receiver, stratum, r2_sequence(index, shift_x), area);
     const Vec3 w =
         Frame::from_normal(x.normal).to_world(cosine_hemisphere(r2_sequence(index + 1, shift_w)));
-    const auto hit =
-        scene.rays.closest_hit(scene.rays.lift(x.position, x.normal), w, kInfinity, hash(seed, k));
+    const auto hit = rays.closest_hit(rays.lift(x.position, x.normal), w, kInfinity, hash(seed, k));
     if (!hit) continue;
     ElementId at = tree.leaf_hit(*hit);
     if (!at.valid()) continue;

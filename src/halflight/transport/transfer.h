@@ -5,15 +5,16 @@
 #include <cstdint>
 
 #include "halflight/hierarchy/elements.h"
-#include "halflight/rays/ray_scene.h"
 #include "halflight/transport/link.h"
+#include "halflight/visibility/visibility.h"
 
 namespace halflight {
 
 // What the estimate needs to know; all referred to, nothing owned.
 struct TransferScene {
   const ElementTree& tree;
-  const RayScene& rays;
+  const Visibility& visibility;
+  float feature_size;                         // of shadows on the receiver
   const IdVector<ElementId, Rgb>& radiosity;  // mean over the element's area
   const IdVector<ElementId, float>& opacity;  // of cells
 };

@@ -11,7 +11,12 @@ Visibility::Visibility(const World& world, const Surfaces& surfaces, const Clust
 }
 
 float Visibility::through_tree(const VisibilityRay& ray, const StopRule& rule) const {
-  return mode_ == VisibilityMode::average ? tree_->average(ray, rule) : tree_->multires(ray, rule);
+  TraversalCount count;
+  const float share = mode_ == VisibilityMode::average ? tree_->average(ray, rule, &count)
+                                                       : tree_->multires(ray, rule, &count);
+  rays_.add();
+  nodes_.add(count.nodes);
+  return share;
 }
 
 float Visibility::transmittance(const RayEnds& ends) const {

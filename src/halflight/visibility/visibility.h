@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "halflight/base/counter.h"
 #include "halflight/rays/world.h"
 #include "halflight/visibility/multires_tree.h"
 
@@ -32,9 +33,14 @@ class Visibility {
   Visibility(const World& world, const Surfaces& surfaces, const ClusterTree& clusters,
              VisibilityMode mode, const MultiresOptions& options = {});
 
+  const World& world() const { return *world_; }
   VisibilityMode mode() const { return mode_; }
   // None in exact mode.
   const MultiresTree* tree() const { return tree_.get(); }
+
+  // Through clusters so far; exact rays are counted by RayScene.
+  std::uint64_t ray_total() const { return rays_.total(); }
+  std::uint64_t node_total() const { return nodes_.total(); }
 
   // Share of the light that arrives, in [0, 1].
   float transmittance(const RayEnds& ends) const;
@@ -60,6 +66,7 @@ class Visibility {
   const World* world_;
   VisibilityMode mode_ = VisibilityMode::exact;
   std::unique_ptr<const MultiresTree> tree_;
+  mutable Counter rays_, nodes_;
 };
 
 }  // namespace halflight
