@@ -12,6 +12,9 @@ namespace {
 
 constexpr std::uint32_t kRaysPerBody = 256;
 constexpr std::uint32_t kWalks = 64;
+// Small things get fewer of both: there are many, and what a mistake could lose is little.
+constexpr float kSmallBody = 0.01f;  // of the scene's diagonal
+constexpr std::uint32_t kFewer = 8;
 constexpr int kStepsOfWalk = 8;
 constexpr float kLargestChamber = 0.25f;  // share of the scene's diagonal
 constexpr std::uint32_t kRaysPerLargeSide = 64;
@@ -40,11 +43,23 @@ Vec3 direction_about(const Vec3& n, std::uint32_t i, std::uint64_t seed) {
   return Frame::from_normal(n).to_world(cosine_hemisphere(r2_sequence(i, random_shift(seed))));
 }
 
+Bounds3f bounds_of(const Geometry& g, const std::vector<TriangleId>& triangles) {
+  Bounds3f box;
+  for (const TriangleId t : triangles)
+    for (const Vec3& corner : g.corners(t)) box.extend(corner);
+  return box;
+}
+
+std::uint32_t scaled_to(float size, const Geometry& g, std::uint32_t trials) {
+  return size < kSmallBody * g.bounds.diagonal() ? trials / kFewer : trials;
+}
+
 // Every ray that leaves this side of the closed body meets the same side of the same body again.
 bool sees_only_itself(const Geometry& g, const RayScene& rays, const Bodies& bodies, BodyId id,
                       bool back) {
   const auto& members = bodies.members[id];
-  for (std::uint32_t i = 0; i < kRaysPerBody; ++i) {
+  const float size = bounds_of(g, members).diagonal();
+  for (std::uint32_t i = 0; i < scaled_to(size, g, kRaysPerBody); ++i) {
     const std::uint64_t seed = hash(id.value, i, back);
     const TriangleId t = members[seed % members.size()];
     const auto [a, b, c] = g.corners(t);
@@ -62,12 +77,10 @@ bool sees_only_itself(const Geometry& g, const RayScene& rays, const Bodies& bod
 bool is_sealed_off(const Scene& scene, const Geometry& g, const RayScene& rays,
                    const Bodies& bodies, BodyId id, bool back) {
   const auto& members = bodies.members[id];
-  Bounds3f box;
-  for (const TriangleId t : members)
-    for (const Vec3& corner : g.corners(t)) box.extend(corner);
+  const Bounds3f box = bounds_of(g, members);
   if (box.diagonal() > kLargestChamber * g.bounds.diagonal()) return false;
   const Vec3 margin(4.f * rays.lift_distance());
-  for (std::uint32_t i = 0; i < kWalks; ++i) {
+  for (std::uint32_t i = 0; i < scaled_to(box.diagonal(), g, kWalks); ++i) {
     const TriangleId start = members[hash(id.value, i, back, 1) % members.size()];
     const auto [a, b, c] = g.corners(start);
     Vec3 p = (a + b + c) / 3.f;

@@ -10,6 +10,7 @@ namespace {
 // Below this many Embree is as fast, and the tree is not worth its building.
 constexpr std::size_t kLeastSheets = 100'000;
 constexpr float kLeastDepth = 0.3f;
+constexpr float kLargestLeaf = 3e-3f;  // of the scene's diagonal, however large the feature size
 
 }  // namespace
 
@@ -18,13 +19,14 @@ ClutterMeasure measure_clutter(const World& world, float feature_size) {
   ClutterMeasure measure;
   if (g.triangles.size() < kLeastSheets) return measure;
   const Bodies bodies = find_bodies(g);
+  const float largest = std::min(feature_size, kLargestLeaf * g.bounds.diagonal());
   double sheets = 0.0;
   for (std::size_t i = 0; i < g.triangles.size(); ++i) {
     const TriangleId t(i);
     const double area = 0.5 * static_cast<double>(glm::length(g.scaled_normal(t)));
     const auto [a, b, c] = g.corners(t);
     const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
-    if (bodies.closed[bodies.of_triangle[t]] || longest > feature_size) continue;
+    if (bodies.closed[bodies.of_triangle[t]] || longest > largest) continue;
     sheets += area;
     ++measure.small_sheets;
   }
