@@ -1,12 +1,15 @@
 // halflight reference SCENE --points FILE --spp N: path-traced irradiance at sensors.
 #include <memory>
 
+#include <fmt/format.h>
+
 #include "commands.h"
 #include "halflight/base/parallel.h"
 #include "halflight/io/sensors.h"
 #include "halflight/rays/reference_sensors.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
+#include "visibility_arguments.h"
 
 namespace halflight::app {
 namespace {
@@ -18,11 +21,33 @@ struct ReferenceArguments {
   std::uint32_t samples = 0;
   std::uint64_t seed = 0;
   int threads = 0;
+  VisibilityArguments visibility;
 };
 
 // Root mean square over the channels.
 float one_number(const Rgb& standard_error) {
   return std::sqrt(glm::dot(standard_error, standard_error) / 3.f);
+}
+
+// Against exact shadows on the same paths: the noise of both is much the same and cancels.
+void report_bias(const std::vector<IrradianceEstimate>& estimates,
+                 const std::vector<IrradianceEstimate>& exact) {
+  double sum = 0.0, exact_sum = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    const auto mean = static_cast<double>(average(estimates[i].mean));
+    const auto truth = static_cast<double>(average(exact[i].mean));
+    sum += mean;
+    exact_sum += truth;
+    squares += (mean - truth) * (mean - truth);
+  }
+  if (!(exact_sum > 0.0)) return;
+  const auto count = static_cast<double>(exact.size());
+  std::fputs(fmt::format("halflight: against exact shadows: mean irradiance {:+.2f} %, RMS "
+                         "difference {:.2f} % of the mean\n",
+                         100.0 * (sum / exact_sum - 1.0),
+                         100.0 * std::sqrt(squares / count) / (exact_sum / count))
+                 .c_str(),
+             stderr);
 }
 
 Result<void> reference(const ReferenceArguments& arguments) {
@@ -32,13 +57,18 @@ Result<void> reference(const ReferenceArguments& arguments) {
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
   const World world(std::move(*scene));
-  const PathTracer tracer(world);
+  const auto shadows = path_shadows(arguments.visibility, world);
+  if (!shadows) return tl::unexpected(shadows.error());
+  const PathTracer tracer(world, *shadows ? &(*shadows)->test() : nullptr);
 
   std::vector<WorldSensor> in_world;
   for (const Sensor& sensor : *sensors) in_world.push_back(to_world(world.scene.to_world, sensor));
   const Progress progress(terminal_progress());
   const auto estimates =
       reference_irradiance(tracer, in_world, arguments.samples, arguments.seed, progress);
+  if (*shadows)
+    report_bias(estimates, reference_irradiance(PathTracer(world), in_world, arguments.samples,
+                                                arguments.seed, progress));
   std::vector<Rgb> means;
   std::vector<float> errors;
   for (const IrradianceEstimate& e : estimates) {
@@ -68,6 +98,7 @@ void add_reference(CLI::App& cli, int& status) {
       ->type_name("N")
       ->check(CLI::Range(2u, 1u << 30))
       ->required();
+  add_visibility_arguments(command, arguments->visibility, "exact");
   command.add_option("--seed", arguments->seed, "picks another set of samples")
       ->capture_default_str();
   command.add_option("--threads", arguments->threads, "0: all cores")

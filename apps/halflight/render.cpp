@@ -61,10 +61,13 @@ Result<void> render(const RenderArguments& arguments) {
                                         [&] { return automatic_view(tracer, arguments.seed); });
   if (!view) return tl::unexpected(view.error());
 
+  const auto shadows = path_shadows(arguments.solve.visibility, *world);
+  if (!shadows) return tl::unexpected(shadows.error());
+  const PathTracer shadowed(*world, *shadows ? &(*shadows)->test() : nullptr);
   const CameraRays camera(view->camera, view->width, view->height);
   const Progress progress(progress_listener(arguments.solve));
   const Result<Image> picture =
-      arguments.path_trace > 0 ? path_traced_image(tracer, camera, view->width, view->height,
+      arguments.path_trace > 0 ? path_traced_image(shadowed, camera, view->width, view->height,
                                                    arguments.path_trace, arguments.seed, progress)
                                : solved_image(arguments, world, *view, progress);
   if (!picture) return tl::unexpected(picture.error());

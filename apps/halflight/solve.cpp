@@ -119,9 +119,10 @@ Result<int> run(const SolveCommand& command) {
     auto written = write_lit(command.outputs.lit, state, report, progress);
     if (!written) return tl::unexpected(written.error());
   }
+  // Cancelled, the last pass and the mesh end early: what is written is valid, and coarser.
   const int status = interruptible.interrupted() ? kInterrupted
-                     : state.done()              ? kGoalMet
-                                                 : kBudgetEnded;
+                     : progress.cancelled()      ? kBudgetEnded
+                                                 : kGoalMet;
   if (!command.outputs.report.empty()) {
     auto written = write_text_atomically(command.outputs.report, report.json(state));
     if (!written) return tl::unexpected(written.error());

@@ -13,20 +13,7 @@
 namespace halflight::app {
 
 void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
-  command
-      .add_option("--feature-size", arguments.feature_size,
-                  "smallest shadow kept exact, e.g. 5cm [scene diagonal / 200]")
-      ->type_name("LEN");
-  const std::map<std::string, VisibilityMode> modes{{"exact", VisibilityMode::exact},
-                                                    {"average", VisibilityMode::average},
-                                                    {"multires", VisibilityMode::multires}};
-  command
-      .add_option("--visibility", arguments.visibility,
-                  "exact: every surface; average: clusters as media; multires: as media only where "
-                  "no shadow of the feature size is lost")
-      ->transform(CLI::CheckedTransformer(modes).description(""))
-      ->type_name("exact|average|multires")
-      ->default_str("multires");
+  add_visibility_arguments(command, arguments.visibility, "multires");
   command.add_option("--error", arguments.error, "relative RMS error of irradiance to aim at")
       ->type_name("PCT")
       ->capture_default_str();
@@ -53,14 +40,10 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
 Result<SolveOptions> resolve(const SolveArguments& arguments) {
   SolveOptions options;
   options.links = arguments.links;
-  options.visibility = arguments.visibility;
-  if (!arguments.feature_size.empty()) {
-    const Result<double> length = parse_length(arguments.feature_size);
-    if (!length) return tl::unexpected(length.error());
-    options.feature_size = static_cast<float>(*length);
-    if (!(options.feature_size >= 0.f))
-      return input_error("--feature-size must not be negative", {}, "0 keeps all shadows exact");
-  }
+  options.visibility = arguments.visibility.mode.value_or(VisibilityMode::multires);
+  const Result<float> feature_size = resolve_feature_size(arguments.visibility);
+  if (!feature_size) return tl::unexpected(feature_size.error());
+  options.feature_size = *feature_size;
   const Result<double> error = parse_percent(arguments.error);
   if (!error) return tl::unexpected(error.error());
   if (!(*error > 0.0)) return input_error("--error must be above zero", {}, "try 1%");

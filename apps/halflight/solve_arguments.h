@@ -9,15 +9,15 @@
 #include "halflight/base/progress.h"
 #include "halflight/base/result.h"
 #include "halflight/solve/solver.h"
+#include "visibility_arguments.h"
 
 namespace halflight::app {
 
 struct SolveArguments {
-  std::string feature_size;  // empty: scene diagonal / 200
+  VisibilityArguments visibility;
   std::string error = "5%";
   std::string time;  // empty: no deadline
   std::string progress = "auto";
-  VisibilityMode visibility = VisibilityMode::multires;
   LinkMaker links = LinkMaker::sampled;
   int threads = 0;
 };

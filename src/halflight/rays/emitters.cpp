@@ -98,6 +98,7 @@ std::optional<LightSample> Emitters::sample_triangle(TriangleId triangle, const 
   if (!(max_component(emitted) > 0.f)) return std::nullopt;
   const float distance = std::sqrt(distance_squared);
   const float projected_area = 0.5f * std::abs(facing) / distance;
+  s.triangle = triangle;
   s.density = probability * distance_squared / projected_area;
   s.normal = glm::normalize(facing > 0.f ? normal : -normal);
   const float opacity = opacity_at(*scene_, *geometry_, triangle, barycentric);

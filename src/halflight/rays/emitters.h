@@ -18,6 +18,7 @@ struct LightSample {
   Vec3 point{0.f};      // on the light
   Vec3 normal{0.f};     // of the light's side that shines at the surface; zero: a punctual light
   Rgb irradiance{0.f};  // W/m2 on the surface when nothing is between, divided by the probability
+  TriangleId triangle;  // invalid: a punctual light
   float density = 0.f;  // per steradian; 0: a punctual light, which no ray meets by chance
 };
 

@@ -33,8 +33,10 @@ Rgb PathTracer::directional_light(const Vec3& p, const Vec3& n) const {
   Rgb total(0.f);
   for (const PunctualLight& light : emitters_.directional()) {
     const float cosine = -glm::dot(n, light.direction);
-    if (cosine > 0.f)
-      total += light.intensity * (cosine * world_->rays.transmittance_to_sky(p, -light.direction));
+    if (!(cosine > 0.f)) continue;
+    const float visible = shadows_ ? shadows_->from_direction(p, -light.direction)
+                                   : world_->rays.transmittance_to_sky(p, -light.direction);
+    total += light.intensity * (cosine * visible);
   }
   return total;
 }
@@ -43,12 +45,14 @@ Rgb PathTracer::sampled_light(const Vec3& p, const Vec3& n, PathSampler& sampler
   const float u_light = sampler.next_pair().x;
   const auto s = emitters_.sample(p, n, u_light, sampler.next_pair());
   if (!s) return Rgb(0.f);
+  const Vec3 end = shadow_ray_end(world_->rays, *s);
+  if (shadows_) return s->irradiance * shadows_->from_emitter(p, end, s->triangle);
   float weight = 1.f;
   if (s->density > 0.f) {
     const float cosine = glm::dot(n, glm::normalize(s->point - p));
     weight = power_heuristic(s->density, std::max(0.f, cosine) / kPi);
   }
-  return s->irradiance * (weight * world_->rays.transmittance(p, shadow_ray_end(world_->rays, *s)));
+  return s->irradiance * (weight * world_->rays.transmittance(p, end));
 }
 
 // E = light samples + pi * (radiance along a cosine-distributed ray), and that radiance is
@@ -66,7 +70,7 @@ Rgb PathTracer::irradiance_by_one_path(Vec3 p, Vec3 n, PathSampler& sampler) con
 
     const SurfacePoint next = surface_point(world_->geometry, *hit);
     const Rgb emitted = emitters_.radiance(hit->triangle, hit->barycentric, hit->front);
-    if (max_component(emitted) > 0.f) {
+    if (max_component(emitted) > 0.f && !shadows_) {
       const float by_light = emitters_.density(hit->triangle, origin, n, direction * hit->distance);
       total += weight * emitted * (kPi * power_heuristic(local.z / kPi, by_light));
     }

@@ -10,6 +10,7 @@
 #include "halflight/transport/emitter_tree.h"
 #include "halflight/transport/outer_light.h"
 #include "halflight/transport/sampled_links.h"
+#include "halflight/visibility/multires_build.h"
 #include "halflight/visibility/pilot.h"
 
 namespace halflight {
@@ -31,14 +32,14 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 std::shared_ptr<const Visibility> choose_visibility(const std::shared_ptr<const World>& world,
                                                     const Surfaces& surfaces,
-                                                    const ClusterTree& clusters,
                                                     const SolveOptions& options) {
   const float s = options.feature_size;
   const bool exact = options.visibility == VisibilityMode::exact || !(s > 0.f) ||
                      (options.visibility == VisibilityMode::multires && options.visibility_pilot &&
                       !clusters_pay(measure_clutter(*world, s)));
   return exact ? std::make_shared<Visibility>(*world)
-               : std::make_shared<Visibility>(*world, surfaces, clusters, options.visibility);
+               : std::make_shared<Visibility>(*world, surfaces, one_cluster(surfaces),
+                                              options.visibility);
 }
 
 // Before any light has arrived: the emitted power spread over all that it could fall on.
@@ -110,14 +111,13 @@ SolverState make_state(const std::shared_ptr<const World>& world, const SolveOpt
   std::vector<Bounds3f> boxes(surfaces->surfaces.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = (*surfaces)[SurfaceId(i)].box;
   const auto live = find_live_sides(world->scene, world->geometry, *surfaces, world->rays);
-  const ClusterTree clusters = build_size_grid(boxes);
   SolverState state{.world = world,
                     .surfaces = surfaces,
-                    .tree = ElementTree(world->geometry, *surfaces, clusters, live),
+                    .tree = ElementTree(world->geometry, *surfaces, build_size_grid(boxes), live),
                     .options = options};
   if (state.options.feature_size < 0.f)
     state.options.feature_size = world->geometry.bounds.diagonal() / 200.f;
-  state.visibility = choose_visibility(world, *surfaces, clusters, state.options);
+  state.visibility = choose_visibility(world, *surfaces, state.options);
 
   const std::size_t n = state.tree.size();
   state.opacity.resize(n, 1.f);

@@ -4,10 +4,10 @@
 #include <array>
 #include <bit>
 
-#include "halflight/hierarchy/bodies.h"
 #include "halflight/rays/sampling.h"
 #include "halflight/rays/spherical_triangle.h"
 #include "halflight/transport/form_factor.h"
+#include "halflight/visibility/emitter_widths.h"
 
 namespace halflight {
 namespace {
@@ -89,18 +89,10 @@ EmitterTree::EmitterTree(const Visibility& visibility, std::vector<EmittingSide>
                                        glm::distance(c, middle)});
     shapes_.push_back({middle, normal_of(e), size, 0.f});
   }
-  if (visibility.mode() != VisibilityMode::exact) find_widths();
-}
-
-// A lamp of many triangles throws the shadows of the lamp, not those of its triangles.
-void EmitterTree::find_widths() {
-  const Bodies bodies = find_bodies(world_->geometry);
-  IdVector<BodyId, Bounds3f> boxes(bodies.members.size());
-  for (const EmittingSide& e : emitters_)
-    for (const Vec3& p : world_->geometry.corners(e.triangle))
-      boxes[bodies.of_triangle[e.triangle]].extend(p);
+  if (visibility.mode() == VisibilityMode::exact) return;
+  const IdVector<TriangleId, float> widths = emitter_widths(*world_);
   for (std::size_t i = 0; i < emitters_.size(); ++i)
-    shapes_[i].width = boxes[bodies.of_triangle[emitters_[i].triangle]].middle_side();
+    shapes_[i].width = widths[emitters_[i].triangle];
 }
 
 // Share of the light from y on an emitter that arrives.

@@ -73,7 +73,6 @@ class EmitterTree {
     float expected = 0.f;  // unoccluded irradiance, roughly
   };
 
-  void find_widths();
   std::uint32_t build(std::uint32_t first, std::uint32_t count);
   bool cannot_light(const Node& node, const Vec3& x, const Vec3& n) const;
   float expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const;

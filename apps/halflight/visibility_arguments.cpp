@@ -1,0 +1,59 @@
+#include "visibility_arguments.h"
+
+#include <map>
+
+#include "halflight/base/quantities.h"
+#include "halflight/hierarchy/surfaces.h"
+#include "halflight/visibility/multires_build.h"
+
+namespace halflight::app {
+namespace {
+
+Visibility make_visibility(const World& world, VisibilityMode mode) {
+  const Surfaces surfaces = build_surfaces(world.geometry);
+  return Visibility(world, surfaces, one_cluster(surfaces), mode);
+}
+
+}  // namespace
+
+void add_visibility_arguments(CLI::App& command, VisibilityArguments& arguments,
+                              const std::string& otherwise) {
+  command
+      .add_option("--feature-size", arguments.feature_size,
+                  "smallest shadow kept exact, e.g. 5cm; 0: all [scene diagonal / 200]")
+      ->type_name("LEN");
+  const std::map<std::string, VisibilityMode> modes{{"exact", VisibilityMode::exact},
+                                                    {"average", VisibilityMode::average},
+                                                    {"multires", VisibilityMode::multires}};
+  command
+      .add_option("--visibility", arguments.mode,
+                  "exact: every surface; average: clusters as media; multires: as media only where "
+                  "no shadow of the feature size is lost")
+      ->transform(CLI::CheckedTransformer(modes).description(""))
+      ->type_name("exact|average|multires")
+      ->default_str(otherwise);
+}
+
+Result<float> resolve_feature_size(const VisibilityArguments& arguments) {
+  if (arguments.feature_size.empty()) return -1.f;
+  const Result<double> length = parse_length(arguments.feature_size);
+  if (!length) return tl::unexpected(length.error());
+  if (!(*length >= 0.0))
+    return input_error("--feature-size must not be negative", {}, "0 keeps all shadows exact");
+  return static_cast<float>(*length);
+}
+
+PathShadows::PathShadows(const World& world, VisibilityMode mode, float feature_size)
+    : visibility_(make_visibility(world, mode)), shadows_(visibility_, feature_size) {}
+
+Result<std::unique_ptr<const PathShadows>> path_shadows(const VisibilityArguments& arguments,
+                                                        const World& world) {
+  Result<float> size = resolve_feature_size(arguments);
+  if (!size) return tl::unexpected(size.error());
+  if (*size < 0.f) size = world.geometry.bounds.diagonal() / 200.f;
+  const VisibilityMode mode = arguments.mode.value_or(VisibilityMode::exact);
+  if (mode == VisibilityMode::exact || !(*size > 0.f)) return nullptr;
+  return std::make_unique<const PathShadows>(world, mode, *size);
+}
+
+}  // namespace halflight::app

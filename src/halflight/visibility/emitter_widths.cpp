@@ -1,0 +1,23 @@
+#include "halflight/visibility/emitter_widths.h"
+
+#include "halflight/hierarchy/bodies.h"
+
+namespace halflight {
+
+IdVector<TriangleId, float> emitter_widths(const World& world) {
+  const Geometry& g = world.geometry;
+  const Bodies bodies = find_bodies(g);
+  const auto emits = [&](TriangleId t) { return world.scene.materials[g.materials[t]].emits(); };
+  IdVector<BodyId, Bounds3f> boxes(bodies.members.size());
+  for (std::size_t i = 0; i < g.triangles.size(); ++i)
+    if (emits(TriangleId(i)))
+      for (const Vec3& p : g.corners(TriangleId(i)))
+        boxes[bodies.of_triangle[TriangleId(i)]].extend(p);
+  IdVector<TriangleId, float> widths(g.triangles.size(), 0.f);
+  for (std::size_t i = 0; i < widths.size(); ++i)
+    if (emits(TriangleId(i)))
+      widths[TriangleId(i)] = boxes[bodies.of_triangle[TriangleId(i)]].middle_side();
+  return widths;
+}
+
+}  // namespace halflight
