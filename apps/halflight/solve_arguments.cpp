@@ -40,6 +40,12 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
       ->transform(CLI::CheckedTransformer(makers).description(""))
       ->type_name("refined|sampled")
       ->default_str("sampled");
+  std::map<std::string, HierarchyKind> hierarchies;
+  for (const NamedHierarchy& h : kHierarchies) hierarchies.emplace(h.name, h.kind);
+  command.add_option("--hierarchy", arguments.hierarchy, "who groups surfaces into clusters")
+      ->transform(CLI::CheckedTransformer(hierarchies).description(""))
+      ->type_name("size-grid|kd-tree|goldsmith-salmon|agglomerative")
+      ->default_str("size-grid");
   command.add_option("--progress", arguments.progress, "how to tell of it on standard error")
       ->check(CLI::IsMember({"auto", "json", "none"}).description(""))
       ->type_name("auto|json|none")
@@ -54,6 +60,7 @@ Result<SolveOptions> resolve(const SolveArguments& arguments) {
   SolveOptions options;
   options.links = arguments.links;
   options.visibility = arguments.visibility;
+  options.hierarchy = arguments.hierarchy;
   if (!arguments.feature_size.empty()) {
     const Result<double> length = parse_length(arguments.feature_size);
     if (!length) return tl::unexpected(length.error());

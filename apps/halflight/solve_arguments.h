@@ -19,6 +19,7 @@ struct SolveArguments {
   std::string progress = "auto";
   VisibilityMode visibility = VisibilityMode::multires;
   LinkMaker links = LinkMaker::sampled;
+  HierarchyKind hierarchy = HierarchyKind::size_grid;
   int threads = 0;
 };
 

@@ -4,7 +4,6 @@
 
 #include "halflight/base/parallel.h"
 #include "halflight/hierarchy/live_sides.h"
-#include "halflight/hierarchy/size_grid.h"
 #include "halflight/solve/cells.h"
 #include "halflight/solve/sweep.h"
 #include "halflight/transport/emitter_tree.h"
@@ -107,10 +106,8 @@ std::vector<ReceiverLink> replace_by_sampled_links(SolverState& state, float thr
 
 SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options) {
   auto surfaces = std::make_shared<const Surfaces>(build_surfaces(world->geometry));
-  std::vector<Bounds3f> boxes(surfaces->surfaces.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = (*surfaces)[SurfaceId(i)].box;
   const auto live = find_live_sides(world->scene, world->geometry, *surfaces, world->rays);
-  const ClusterTree clusters = build_size_grid(boxes);
+  const ClusterTree clusters = build_hierarchy(options.hierarchy, world->geometry, *surfaces);
   SolverState state{.world = world,
                     .surfaces = surfaces,
                     .tree = ElementTree(world->geometry, *surfaces, clusters, live),
