@@ -10,7 +10,6 @@
 namespace halflight {
 namespace {
 
-constexpr float kFlatness = 0.02f;      // of the longest side: flat boxes get a volume
 constexpr std::size_t kSlowRound = 16;  // a round that merges fewer than 1 in so many is helped
 constexpr std::size_t kSearchGrain = 2048;
 constexpr std::size_t kBlock = 1u << 15;  // of the list, when it is compacted
@@ -124,18 +123,10 @@ class AgglomerativeBuilder {
   float merge_cost(const MergeCandidate& a, const MergeCandidate& b) const {
     Bounds3f both = a.box;
     both.extend(b.box);
-    const float flat = kFlatness * both.longest_side();
-    const auto volume = [flat](const Bounds3f& box) {
-      const Vec3 e = box.upper - box.lower + flat;
-      return e.x * e.y * e.z;
-    };
-    const float whole = volume(both);
-    const float empty =
-        whole > 0.f ? std::max(0.f, 1.f - (volume(a.box) + volume(b.box)) / whole) : 0.f;
     const float area = a.area + b.area;
     const float turned = area > 0.f ? 1.f - glm::length(a.normals + b.normals) / area : 0.f;
     return both.surface_area() * (1.f + options_.size_weight * std::abs(a.log_size - b.log_size)) *
-           (1.f + options_.empty_weight * empty) * (1.f + options_.orientation_weight * turned);
+           (1.f + options_.orientation_weight * turned);
   }
 
   // Of pairs of equal cost the one whose places differ in the lowest bits comes first: equal boxes

@@ -12,13 +12,11 @@
 namespace halflight {
 
 // The cost of a cluster u made of a and b, smaller is better:
-//   S(u) (1 + size * |log2(L(a) / L(b))|) (1 + empty * e) (1 + orientation * (1 - |N(u)| / A(u)))
-// S surface area of the box, L its longest side, e = 1 - (V(a) + V(b)) / V(u) its empty share,
-// N the sum of area times normal, A of areas.
+//   S(u) (1 + size * |log2(L(a) / L(b))|) (1 + orientation * (1 - |N(u)| / A(u)))
+// S surface area of the box, L its longest side, N the sum of area times normal, A of areas.
 struct AgglomerativeOptions {
   int search_radius = 8;  // places along the curve looked at on either side
   float size_weight = 0.5f;
-  float empty_weight = 1.f;
   float orientation_weight = 0.25f;
   // Surfaces of a connected body merge with each other before others, unless it is longer than this
   // share of the scene: walls are not an object.
