@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kLong = 6, kShort = 2;  // samples of each light
 constexpr float kRadiance = 20.f;
-constexpr float kWhite = 16.f;  // radiosity shown as white, W/m2
+constexpr float kWhite = 8.f;  // radiosity shown as white, W/m2
 constexpr int kPictureWidth = 480, kPictureHeight = 320;
 // Of the SIGGRAPH version, with its own hierarchy.
 constexpr const char* kPaperSurfaceSeconds = "1216";
