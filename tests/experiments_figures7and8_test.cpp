@@ -40,7 +40,7 @@ TEST_F(Figure8, ShadowsUnderDesksStayWithFittedExtinction) {
   EXPECT_NEAR(office("size-grid").under_desks, 1.0, 0.25);
   EXPECT_NEAR(office("goldsmith-salmon").under_desks, 1.0, 0.25);
   EXPECT_NEAR(office("agglomerative").under_desks, 1.0, 0.25);
-  // Boxes of straddling surfaces overlap what they do not hold: too dark, not lost.
+  // Too dark, not lost: its clusters of straddling surfaces are wide.
   EXPECT_LT(office("kd-tree").under_desks, 0.75);
 }
 
