@@ -9,6 +9,8 @@ Result<Section> run_figure1(const Progress& progress);
 Result<Section> run_figure2(const Progress& progress);
 Result<Section> run_figure3(const Progress& progress);
 Result<Section> run_figure4(const Progress& progress);
+Result<Section> run_figure7(const Progress& progress);
+Result<Section> run_figure8(const Progress& progress);
 Result<Section> run_figure9(const Progress& progress);
 Result<Section> run_table1(const Progress& progress);
 

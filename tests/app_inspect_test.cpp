@@ -52,6 +52,21 @@ TEST(Inspect, JsonHoldsCountsEmittersAndFindings) {
   EXPECT_TRUE(j["findings"].is_array());
 }
 
+TEST(Inspect, TellsOfHierarchiesOnRequest) {
+  const TemporaryFolder folder;
+  const CommandRun all = run(folder, "inspect " + lamp(folder) + " --json --hierarchy all");
+  EXPECT_EQ(all.status, 0) << all.err;
+  const nlohmann::json j = nlohmann::json::parse(all.out)["hierarchies"];
+  ASSERT_EQ(j.size(), 4u);
+  EXPECT_EQ(j[3]["name"], "agglomerative");
+  EXPECT_EQ(j[3]["clusters"], 1);
+  EXPECT_THAT(run(folder, "inspect " + lamp(folder) + " --hierarchy kd-tree").out,
+              HasSubstr("hierarchy  kd-tree: 1 clusters"));
+  EXPECT_FALSE(nlohmann::json::parse(run(folder, "inspect --json " + lamp(folder)).out)
+                   .contains("hierarchies"));
+  EXPECT_NE(run(folder, "inspect " + lamp(folder) + " --hierarchy octree").status, 0);
+}
+
 TEST(Inspect, UnitsScaleTheSceneAndAreCheckedByName) {
   const TemporaryFolder folder;
   const auto size = [&](const std::string& options) {

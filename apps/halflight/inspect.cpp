@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "halflight/scene/lint.h"
 #include "halflight/scene/summary.h"
+#include "inspect_hierarchy.h"
 #include "scene_arguments.h"
 
 namespace halflight::app {
@@ -154,21 +155,28 @@ void print(const std::string& path, const Inspection& i) {
   for (const std::string& warning : i.scene.warnings) fmt::print("warning: {}\n", warning);
 }
 
-int run(const SceneArguments& arguments, bool as_json) {
-  Result<Scene> scene = load(arguments);
-  if (!scene) return fail(scene.error());
-  const Inspection inspection = inspect(std::move(*scene));
-  if (as_json)
-    fmt::print("{}\n", to_json(inspection).dump(1, ' ', false, json::error_handler_t::replace));
-  else
-    print(arguments.path.string(), inspection);
-  return kGoalMet;
-}
-
 struct Arguments {
   SceneArguments scene;
+  std::string hierarchy;  // a name, "all", or empty
   bool as_json = false;
 };
+
+int run(const Arguments& arguments) {
+  Result<Scene> scene = load(arguments.scene);
+  if (!scene) return fail(scene.error());
+  std::vector<InspectedHierarchy> hierarchies;
+  if (!arguments.hierarchy.empty()) hierarchies = inspect_hierarchies(*scene, arguments.hierarchy);
+  const Inspection inspection = inspect(std::move(*scene));
+  if (arguments.as_json) {
+    json all = to_json(inspection);
+    if (!hierarchies.empty()) all["hierarchies"] = hierarchies_json(hierarchies);
+    fmt::print("{}\n", all.dump(1, ' ', false, json::error_handler_t::replace));
+  } else {
+    print(arguments.scene.path.string(), inspection);
+    print_hierarchies(hierarchies);
+  }
+  return kGoalMet;
+}
 
 }  // namespace
 
@@ -176,8 +184,13 @@ void add_inspect(CLI::App& cli, int& status) {
   CLI::App* command = cli.add_subcommand("inspect", "what is in a scene and what is wrong with it");
   auto arguments = std::make_shared<Arguments>();
   add_scene_arguments(*command, arguments->scene);
+  command
+      ->add_option("--hierarchy", arguments->hierarchy,
+                   "how well a builder's clusters serve this scene; all: every builder")
+      ->check(CLI::IsMember(hierarchy_choices()).description(""))
+      ->type_name("all|size-grid|kd-tree|goldsmith-salmon|agglomerative");
   command->add_flag("--json", arguments->as_json, "print all of it as JSON");
-  command->callback([arguments, &status] { status = run(arguments->scene, arguments->as_json); });
+  command->callback([arguments, &status] { status = run(*arguments); });
 }
 
 }  // namespace halflight::app

@@ -27,6 +27,12 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
       ->transform(CLI::CheckedTransformer(makers).description(""))
       ->type_name("refined|sampled")
       ->default_str("sampled");
+  std::map<std::string, HierarchyKind> hierarchies;
+  for (const NamedHierarchy& h : kHierarchies) hierarchies.emplace(h.name, h.kind);
+  command.add_option("--hierarchy", arguments.hierarchy, "who groups surfaces into clusters")
+      ->transform(CLI::CheckedTransformer(hierarchies).description(""))
+      ->type_name("size-grid|kd-tree|goldsmith-salmon|agglomerative")
+      ->default_str("size-grid");
   command.add_option("--progress", arguments.progress, "how to tell of it on standard error")
       ->check(CLI::IsMember({"auto", "json", "none"}).description(""))
       ->type_name("auto|json|none")
@@ -44,6 +50,7 @@ Result<SolveOptions> resolve(const SolveArguments& arguments) {
   const Result<float> feature_size = resolve_feature_size(arguments.visibility);
   if (!feature_size) return tl::unexpected(feature_size.error());
   options.feature_size = *feature_size;
+  options.hierarchy = arguments.hierarchy;
   const Result<double> error = parse_percent(arguments.error);
   if (!error) return tl::unexpected(error.error());
   if (!(*error > 0.0)) return input_error("--error must be above zero", {}, "try 1%");

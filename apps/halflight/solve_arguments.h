@@ -19,6 +19,7 @@ struct SolveArguments {
   std::string time;  // empty: no deadline
   std::string progress = "auto";
   LinkMaker links = LinkMaker::sampled;
+  HierarchyKind hierarchy = HierarchyKind::size_grid;
   int threads = 0;
 };
 

@@ -17,6 +17,9 @@ struct ClusterTree {
   };
   std::vector<Cluster> clusters;
   std::uint32_t root = 0;
+  // The space that the builder gave each cluster, where that is more than its members' boxes (cells
+  // of a k-d tree); else empty.
+  std::vector<Bounds3f> volumes;
 };
 
 }  // namespace halflight

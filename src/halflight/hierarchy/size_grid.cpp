@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <numeric>
+#include <tuple>
 #include <unordered_map>
 
 #include "halflight/hierarchy/morton.h"
@@ -29,7 +30,7 @@ class Builder {
     side_ = std::max(scene_.longest_side(), 1e-20f);
   }
 
-  ClusterTree build() {
+  ClusterTree build(std::uint64_t* steps) {
     std::vector<std::vector<Item>> native(kFinestLevel + 1);
     for (std::uint32_t i = 0; i < boxes_.size(); ++i)
       native[level_of(boxes_[i])].push_back({boxes_[i], i, false});
@@ -41,6 +42,7 @@ class Builder {
     }
     promoted.insert(promoted.end(), native[0].begin(), native[0].end());
     tree_.root = make_cluster(promoted);
+    if (steps) *steps += steps_;
     return std::move(tree_);
   }
 
@@ -68,7 +70,8 @@ class Builder {
     const Vec3 e = box.extent() + Vec3(padding_);
     return e.x * e.y * e.z;
   }
-  float empty_share(const Bounds3f& a, const Bounds3f& b) const {
+  float empty_share(const Bounds3f& a, const Bounds3f& b) {
+    ++steps_;
     Bounds3f both = a;
     both.extend(b);
     return std::max(0.f, 1.f - (padded_volume(a) + padded_volume(b)) / padded_volume(both));
@@ -143,16 +146,33 @@ class Builder {
       if (tiny.size() > 1) result.push_back(cluster_item(tiny));
       return;
     }
+    // In a crowd only hosts near along the curve are looked at.
+    std::vector<std::uint64_t> codes;
+    for (const std::uint32_t host : hosts)
+      codes.push_back(morton_code(result[host].box.center(), scene_));
+    if (hosts.size() > kChunk) sort_together(codes, hosts);
     std::map<std::uint32_t, std::vector<Item>> guests;
     for (const Item& item : tiny) {
-      const auto growth = [&](std::uint32_t host) {
-        Bounds3f both = result[host].box;
+      std::size_t first = 0, last = hosts.size();
+      if (last > kChunk) {
+        const auto at =
+            std::lower_bound(codes.begin(), codes.end(), morton_code(item.box.center(), scene_));
+        const auto middle = static_cast<std::size_t>(at - codes.begin());
+        first = middle > kChunk / 2 ? middle - kChunk / 2 : 0;
+        last = std::min(last, middle + kChunk / 2);
+      }
+      std::uint32_t best = hosts[first];
+      float least = kInfinity;
+      for (std::size_t i = first; i < last; ++i) {
+        ++steps_;
+        Bounds3f both = result[hosts[i]].box;
         both.extend(item.box);
-        return padded_volume(both) - padded_volume(result[host].box);
-      };
-      guests[*std::min_element(hosts.begin(), hosts.end(), [&](auto a, auto b) {
-        return growth(a) < growth(b);
-      })].push_back(item);
+        const float growth = padded_volume(both) - padded_volume(result[hosts[i]].box);
+        if (!(growth < least)) continue;
+        least = growth;
+        best = hosts[i];
+      }
+      guests[best].push_back(item);
     }
     for (const auto& [host, joined] : guests) {
       std::vector<Item> members{result[host]};
@@ -241,6 +261,13 @@ class Builder {
     return true;
   }
 
+  static void sort_together(std::vector<std::uint64_t>& codes, std::vector<std::uint32_t>& hosts) {
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> both;
+    for (std::size_t i = 0; i < hosts.size(); ++i) both.emplace_back(codes[i], hosts[i]);
+    std::sort(both.begin(), both.end());
+    for (std::size_t i = 0; i < hosts.size(); ++i) std::tie(codes[i], hosts[i]) = both[i];
+  }
+
   void sort_by_morton(std::vector<Item>& items) const {
     std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) {
       return morton_code(a.box.center(), scene_) < morton_code(b.box.center(), scene_);
@@ -291,14 +318,15 @@ class Builder {
   float side_ = 1.f;
   float padding_ = 0.f;
   std::uint32_t level_first_cluster_ = 0;
+  std::uint64_t steps_ = 0;  // pairs of boxes looked at
   ClusterTree tree_;
 };
 
 }  // namespace
 
-ClusterTree build_size_grid(std::span<const Bounds3f> surface_boxes,
-                            const SizeGridOptions& options) {
-  return Builder(surface_boxes, options).build();
+ClusterTree build_size_grid(std::span<const Bounds3f> surface_boxes, const SizeGridOptions& options,
+                            std::uint64_t* steps) {
+  return Builder(surface_boxes, options).build(steps);
 }
 
 }  // namespace halflight

@@ -2,6 +2,7 @@
 // the finest grid upwards are grouped by proximity (least empty space) into clusters.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "halflight/hierarchy/cluster_tree.h"
@@ -18,6 +19,6 @@ struct SizeGridOptions {
 };
 
 ClusterTree build_size_grid(std::span<const Bounds3f> surface_boxes,
-                            const SizeGridOptions& options = {});
+                            const SizeGridOptions& options = {}, std::uint64_t* steps = nullptr);
 
 }  // namespace halflight

@@ -43,6 +43,7 @@ json settings(const SolverState& state) {
           {"error", state.options.error},
           {"links", state.options.links == LinkMaker::refined ? "refined" : "sampled"},
           {"visibility", name_of(state.visibility->mode())},
+          {"hierarchy", name_of(state.options.hierarchy)},
           {"passes", state.options.passes},
           {"sky", rgb(state.world->scene.sky)},
           {"threads", thread_count()},

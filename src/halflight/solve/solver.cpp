@@ -4,7 +4,6 @@
 
 #include "halflight/base/parallel.h"
 #include "halflight/hierarchy/live_sides.h"
-#include "halflight/hierarchy/size_grid.h"
 #include "halflight/solve/cells.h"
 #include "halflight/solve/sweep.h"
 #include "halflight/transport/emitter_tree.h"
@@ -32,14 +31,18 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 std::shared_ptr<const Visibility> choose_visibility(const std::shared_ptr<const World>& world,
                                                     const Surfaces& surfaces,
+                                                    const ClusterTree& clusters,
                                                     const SolveOptions& options) {
   const float s = options.feature_size;
   const bool exact = options.visibility == VisibilityMode::exact || !(s > 0.f) ||
                      (options.visibility == VisibilityMode::multires && options.visibility_pilot &&
                       !clusters_pay(measure_clutter(*world, s)));
-  return exact ? std::make_shared<Visibility>(*world)
-               : std::make_shared<Visibility>(*world, surfaces, one_cluster(surfaces),
-                                              options.visibility);
+  if (exact) return std::make_shared<Visibility>(*world);
+  // Average visibility is the hierarchy's own; multi-resolution rays may group surfaces as they
+  // like.
+  if (options.visibility == VisibilityMode::average)
+    return std::make_shared<Visibility>(*world, surfaces, clusters, options.visibility);
+  return std::make_shared<Visibility>(*world, surfaces, one_cluster(surfaces), options.visibility);
 }
 
 // Before any light has arrived: the emitted power spread over all that it could fall on.
@@ -108,16 +111,15 @@ std::vector<ReceiverLink> replace_by_sampled_links(SolverState& state, float thr
 
 SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options) {
   auto surfaces = std::make_shared<const Surfaces>(build_surfaces(world->geometry));
-  std::vector<Bounds3f> boxes(surfaces->surfaces.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = (*surfaces)[SurfaceId(i)].box;
   const auto live = find_live_sides(world->scene, world->geometry, *surfaces, world->rays);
+  const ClusterTree clusters = build_hierarchy(options.hierarchy, world->geometry, *surfaces);
   SolverState state{.world = world,
                     .surfaces = surfaces,
-                    .tree = ElementTree(world->geometry, *surfaces, build_size_grid(boxes), live),
+                    .tree = ElementTree(world->geometry, *surfaces, clusters, live),
                     .options = options};
   if (state.options.feature_size < 0.f)
     state.options.feature_size = world->geometry.bounds.diagonal() / 200.f;
-  state.visibility = choose_visibility(world, *surfaces, state.options);
+  state.visibility = choose_visibility(world, *surfaces, clusters, state.options);
 
   const std::size_t n = state.tree.size();
   state.opacity.resize(n, 1.f);

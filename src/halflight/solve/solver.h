@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "halflight/base/progress.h"
+#include "halflight/hierarchy/build_hierarchy.h"
 #include "halflight/hierarchy/elements.h"
 #include "halflight/rays/world.h"
 #include "halflight/transport/link.h"
@@ -29,7 +30,8 @@ struct SolveOptions {
   bool visibility_pilot = true;
   float error = 0.05f;  // aimed-at relative RMS error of irradiance
   LinkMaker links = LinkMaker::sampled;
-  int passes = 3;  // settings of the threshold, coarse to fine
+  HierarchyKind hierarchy = HierarchyKind::size_grid;  // who groups surfaces into clusters
+  int passes = 3;                                      // settings of the threshold, coarse to fine
   std::size_t most_links = 40'000'000;
 };
 
