@@ -60,7 +60,8 @@ Result<void> write_lit(const std::filesystem::path& path, const SolverState& sta
   const auto start = std::chrono::steady_clock::now();
   const LitMesh mesh = build_lit_mesh(
       world.scene, world.geometry,
-      [&](std::span<const ReadingPoint> points) { return reader(points); }, options, progress);
+      [&](std::span<const ReadingPoint> points) { return reader(points, progress); }, options,
+      progress);
   report.end_phase("lit mesh", start);
   const float exposure = automatic_exposure(world.scene, world.geometry, mesh.primitives);
   auto written = write_lit_glb(path, world.scene, world.geometry, mesh.primitives, exposure);

@@ -100,9 +100,24 @@ Reading SolutionReader::read(const ReadingPoint& point) const {
   return reading;
 }
 
-std::vector<Reading> SolutionReader::operator()(std::span<const ReadingPoint> points) const {
+Reading SolutionReader::of_cell(const ReadingPoint& point) const {
+  if (!point.triangle.valid()) return read(point);
+  RayHit there;
+  there.triangle = point.triangle;
+  there.front =
+      glm::dot(point.normal, state_->world->geometry.scaled_normal(point.triangle)) >= 0.f;
+  const ElementId leaf = state_->tree.find_leaf(state_->surfaces->side_hit(there), point.position);
+  if (!leaf.valid()) return {};
+  const Rgb direct = state_->given_light[leaf];
+  return {direct, glm::max(irradiance_.at(leaf, point.position) - direct, Rgb(0.f))};
+}
+
+std::vector<Reading> SolutionReader::operator()(std::span<const ReadingPoint> points,
+                                                const Progress& progress) const {
   std::vector<Reading> readings(points.size());
-  parallel_for(points.size(), 16, [&](std::size_t i) { readings[i] = read(points[i]); });
+  parallel_for(points.size(), 16, [&](std::size_t i) {
+    readings[i] = progress.cancelled() ? of_cell(points[i]) : read(points[i]);
+  });
   return readings;
 }
 

@@ -31,7 +31,11 @@ class SolutionReader {
   SolutionReader(const SolverState& state, const ReadOptions& options);
 
   Reading read(const ReadingPoint& point) const;
-  std::vector<Reading> operator()(std::span<const ReadingPoint> points) const;  // in parallel
+  // In parallel. Once the progress is cancelled what is left is taken from the cells.
+  std::vector<Reading> operator()(std::span<const ReadingPoint> points,
+                                  const Progress& progress = {}) const;
+  // The light of the cell that the point lies in, without a ray: blocky, and at once.
+  Reading of_cell(const ReadingPoint& point) const;
 
   // Emitting surfaces, punctual lights and sky. Different shifts put shadow rays elsewhere: a
   // pixel's samples each have their own, the same for all pixels, so that steps in penumbrae

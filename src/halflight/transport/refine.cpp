@@ -84,6 +84,7 @@ class Oracle {
   // systematically loses what they missed.
   Verdict accept(ElementId r, ElementId s, int samples, const TransferBounds& bounds) const {
     if (options_.shape_only) return {};
+    if (accept_all_) samples = 1;
     const bool cells = !scene_.tree[r].is_cluster() && !scene_.tree[s].is_cluster();
     const TransferEstimate t = bounds.touching && !cells
                                    ? estimate_touching_transfer(scene_, r, s, samples, kFinal)
