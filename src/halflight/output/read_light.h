@@ -19,8 +19,8 @@ struct ReadOptions {
 
 // For the many vertices of a lit mesh, and for pixels, several of which share a place.
 inline constexpr ReadOptions kMeshReading{
-    .gather_rays = 256,
-    .direct = {.shadow_rays = 8, .penumbra_rays = 32, .largest_group_share = 0.03f}};
+    .gather_rays = 128,
+    .direct = {.shadow_rays = 8, .penumbra_rays = 24, .largest_group_share = 0.03f}};
 inline constexpr ReadOptions kPixelReading{
     .gather_rays = 32,
     .direct = {.shadow_rays = 8, .penumbra_rays = 24, .largest_group_share = 0.03f}};
