@@ -64,7 +64,8 @@ void update_tolerance(SolverState& state, float mean) {
   for (std::size_t i = tree.size(); i-- > 0;) {
     const ElementId e(i);
     if (tree[e].is_leaf()) {
-      const float share = tree[e].is_cluster() ? 1.f : average(state.irradiance[e]) / mean;
+      const float share =
+          tree[e].is_cluster() ? 1.f : average(state.irradiance[e]) / std::max(mean, 1e-30f);
       state.tolerance[e] = std::clamp(std::sqrt(share), kLeastTolerance, 1.f);
       continue;
     }
