@@ -29,8 +29,8 @@ constexpr std::array kPaperSeconds{2069, 1984, 1648, 1459, 1356};
 
 // The paper's grids over whole cubes: each is a cluster of its sides, the last that visibility
 // knows.
-ClusterTree cluster_bodies(const World& world, const Surfaces& surfaces) {
-  const Bodies bodies = find_bodies(world.geometry);
+ClusterTree cluster_bodies(const Surfaces& surfaces) {
+  const Bodies& bodies = surfaces.bodies;
   std::vector<Bounds3f> boxes(bodies.members.size());
   std::vector<std::vector<SurfaceId>> sides(boxes.size());
   for (std::size_t i = 0; i < surfaces.surfaces.size(); ++i) {
@@ -56,7 +56,7 @@ MultiresTree build_tree(const World& world, const Surfaces& surfaces) {
   options.blocker_size = BlockerSizeRule::isotropic;
   options.extinction = ExtinctionRule::area;
   options.receiver_clearance = 0.f;
-  return {world.scene, world.geometry, surfaces, cluster_bodies(world, surfaces), options};
+  return {world.scene, world.geometry, surfaces, cluster_bodies(surfaces), options};
 }
 
 float light_pixel(const World& world, const MultiresTree& tree, const Vec3& on_wall,

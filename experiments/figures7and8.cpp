@@ -194,7 +194,7 @@ std::vector<AverageOffice> light_office(const OfficeView& view, int width, int h
     all.push_back(light_by(view, timed, name, tree, under_desks, width, height));
   };
   for (const NamedHierarchy& h : kHierarchies)
-    add(std::string(h.name), build_hierarchy(h.kind, view.world.geometry, view.surfaces));
+    add(std::string(h.name), build_hierarchy(h.kind, view.surfaces));
   std::vector<Bounds3f> boxes;
   for (const Surface& s : view.surfaces.surfaces) boxes.push_back(s.box);
   KdTreeOptions whole_cells;

@@ -28,7 +28,7 @@ float length_inside(const Bounds3f& box, const Vec3& a, const Vec3& d) {
 PublishedExtinction::PublishedExtinction(const World& world, const Surfaces& surfaces,
                                          const ClusterTree& tree) {
   const Geometry& g = world.geometry;
-  const auto areas = blocking_areas(world.scene, g);
+  const auto areas = blocking_areas(world.scene, g, surfaces.bodies);
   std::vector<float> blocking(surfaces.surfaces.size(), 0.f);
   for (std::size_t t = 0; t < g.triangles.size(); ++t) {
     const SurfaceId s = surfaces.of_triangle[TriangleId(t)];

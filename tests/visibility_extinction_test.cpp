@@ -18,8 +18,9 @@ using testing::ShapeScene;
 float total_blocking_area(ShapeScene& shapes) {
   shapes.end_mesh();
   const World world(shapes.scene);
+  const Surfaces surfaces = build_surfaces(world.geometry);
   float sum = 0.f;
-  for (const float area : blocking_areas(world.scene, world.geometry)) sum += area;
+  for (const float area : blocking_areas(world.scene, world.geometry, surfaces.bodies)) sum += area;
   return sum;
 }
 
@@ -68,7 +69,8 @@ Slab shoot_through(ShapeScene& shapes) {
   const ClusteredWorld c = testing::cluster(shapes);
   const MultiresTree tree(c.world.scene, c.world.geometry, c.surfaces, c.clusters);
   float area = 0.f;
-  for (const float a : blocking_areas(c.world.scene, c.world.geometry)) area += a;
+  for (const float a : blocking_areas(c.world.scene, c.world.geometry, c.surfaces.bodies))
+    area += a;
   const float kappa = extinction(area, kFilled);
   constexpr int kRays = 20000;
   const auto mean_of = [&](const std::function<double(const Vec3&, const Vec3&)>& f) {

@@ -33,7 +33,7 @@ std::vector<InspectedHierarchy> inspect_hierarchies(const Scene& scene, const st
   for (const NamedHierarchy& h : kHierarchies) {
     if (choice != "all" && choice != h.name) continue;
     const auto start = std::chrono::steady_clock::now();
-    const ClusterTree tree = build_hierarchy(h.kind, world.geometry, surfaces);
+    const ClusterTree tree = build_hierarchy(h.kind, surfaces);
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
     inspected.push_back(
         {std::string(h.name), time.count(), measure_hierarchy(world, surfaces, tree)});

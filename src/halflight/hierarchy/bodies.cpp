@@ -4,12 +4,9 @@
 #include <numeric>
 #include <tuple>
 
-#include "halflight/hierarchy/surfaces.h"
-
 namespace halflight {
 
-Bodies find_bodies(const Geometry& g) {
-  const auto welded = weld_positions(g);
+Bodies find_bodies(const Geometry& g, const IdVector<VertexId, VertexId>& welded) {
   std::vector<std::uint32_t> parent(g.positions.size());
   std::iota(parent.begin(), parent.end(), 0u);
   const auto find = [&](std::uint32_t v) {

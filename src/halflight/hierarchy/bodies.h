@@ -17,7 +17,7 @@ struct Bodies {
   IdVector<BodyId, std::vector<TriangleId>> members;
 };
 
-// Corners at exactly the same position are one; bodies are numbered by their first triangle.
-Bodies find_bodies(const Geometry& geometry);
+// Bodies are numbered by their first triangle. `welded`: see weld_positions (surfaces.h).
+Bodies find_bodies(const Geometry& geometry, const IdVector<VertexId, VertexId>& welded);
 
 }  // namespace halflight

@@ -36,10 +36,8 @@ ClusterTree build_hierarchy(HierarchyKind kind, std::span<const SurfaceShape> sh
   return build_over_boxes(kind, boxes, steps);
 }
 
-ClusterTree build_hierarchy(HierarchyKind kind, const Geometry& geometry,
-                            const Surfaces& surfaces) {
-  if (kind == HierarchyKind::agglomerative)
-    return build_agglomerative(surface_shapes(geometry, surfaces));
+ClusterTree build_hierarchy(HierarchyKind kind, const Surfaces& surfaces) {
+  if (kind == HierarchyKind::agglomerative) return build_agglomerative(surface_shapes(surfaces));
   std::vector<Bounds3f> boxes(surfaces.surfaces.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = surfaces[SurfaceId(i)].box;
   return build_over_boxes(kind, boxes, nullptr);

@@ -30,6 +30,6 @@ std::string_view name_of(HierarchyKind kind);
 ClusterTree build_hierarchy(HierarchyKind kind, std::span<const SurfaceShape> shapes,
                             std::uint64_t* steps = nullptr);
 // Finds out about the surfaces what this kind needs to know.
-ClusterTree build_hierarchy(HierarchyKind kind, const Geometry& geometry, const Surfaces& surfaces);
+ClusterTree build_hierarchy(HierarchyKind kind, const Surfaces& surfaces);
 
 }  // namespace halflight

@@ -4,7 +4,6 @@
 #include <atomic>
 
 #include "halflight/base/parallel.h"
-#include "halflight/hierarchy/bodies.h"
 #include "halflight/rays/sampling.h"
 
 namespace halflight {
@@ -161,7 +160,7 @@ LitByEmission find_lit_by_emission(const Scene& scene, const Geometry& g, const 
 
 IdVector<SideId, std::uint8_t> find_live_sides(const Scene& scene, const Geometry& g,
                                                const Surfaces& surfaces, const RayScene& rays) {
-  const Bodies bodies = find_bodies(g);
+  const Bodies& bodies = surfaces.bodies;
   const Openings openings = find_openings(scene, g, bodies);
   const LitByEmission lit = find_lit_by_emission(scene, g, surfaces, rays, bodies);
   std::vector<std::uint8_t> dead(2 * bodies.members.size(), 0);

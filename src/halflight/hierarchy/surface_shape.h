@@ -15,6 +15,6 @@ struct SurfaceShape {
   std::uint32_t object = 0;  // the same for all surfaces of one connected body
 };
 
-std::vector<SurfaceShape> surface_shapes(const Geometry& geometry, const Surfaces& surfaces);
+std::vector<SurfaceShape> surface_shapes(const Surfaces& surfaces);
 
 }  // namespace halflight

@@ -144,7 +144,8 @@ IdVector<VertexId, VertexId> weld_positions(const Geometry& g) {
 
 Surfaces build_surfaces(const Geometry& g) {
   const std::size_t n = g.triangles.size();
-  const auto neighbours = manifold_neighbours(g, weld_positions(g));
+  const IdVector<VertexId, VertexId> welded = weld_positions(g);
+  const auto neighbours = manifold_neighbours(g, welded);
 
   std::vector<float> area(n);
   for (std::size_t i = 0; i < n; ++i) area[i] = 0.5f * glm::length(g.scaled_normal(TriangleId(i)));
@@ -154,6 +155,7 @@ Surfaces build_surfaces(const Geometry& g) {
                    [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
 
   Surfaces result;
+  result.bodies = find_bodies(g, welded);
   result.of_triangle.resize(n);
   result.triangles.reserve(n);
   result.cumulative_area.reserve(n);

@@ -7,6 +7,7 @@
 
 #include "halflight/base/ids.h"
 #include "halflight/base/vec.h"
+#include "halflight/hierarchy/bodies.h"
 #include "halflight/rays/ray_scene.h"
 #include "halflight/scene/geometry.h"
 
@@ -44,6 +45,7 @@ struct Surfaces {
   std::vector<TriangleId> triangles;   // grouped by surface
   std::vector<float> cumulative_area;  // within its surface, after each of `triangles`
   IdVector<TriangleId, SurfaceId> of_triangle;
+  Bodies bodies;  // what hangs together, in one plane or not
 
   const Surface& operator[](SurfaceId id) const { return surfaces[id]; }
   const Surface& operator[](SideId id) const { return surfaces[surface_of(id)]; }

@@ -36,7 +36,7 @@ std::shared_ptr<const Visibility> choose_visibility(const std::shared_ptr<const 
   const float s = options.feature_size;
   const bool exact = options.visibility == VisibilityMode::exact || !(s > 0.f) ||
                      (options.visibility == VisibilityMode::multires && options.visibility_pilot &&
-                      !clusters_pay(measure_clutter(*world, s)));
+                      !clusters_pay(measure_clutter(*world, surfaces.bodies, s)));
   if (exact) return std::make_shared<Visibility>(*world);
   // Average visibility is the hierarchy's own; multi-resolution rays may group surfaces as they
   // like.
@@ -113,7 +113,7 @@ std::vector<ReceiverLink> replace_by_sampled_links(SolverState& state, float thr
 SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options) {
   auto surfaces = std::make_shared<const Surfaces>(build_surfaces(world->geometry));
   const auto live = find_live_sides(world->scene, world->geometry, *surfaces, world->rays);
-  const ClusterTree clusters = build_hierarchy(options.hierarchy, world->geometry, *surfaces);
+  const ClusterTree clusters = build_hierarchy(options.hierarchy, *surfaces);
   SolverState state{.world = world,
                     .surfaces = surfaces,
                     .tree = ElementTree(world->geometry, *surfaces, clusters, live),

@@ -7,7 +7,6 @@
 #include "halflight/rays/sampling.h"
 #include "halflight/rays/spherical_triangle.h"
 #include "halflight/transport/form_factor.h"
-#include "halflight/visibility/emitter_widths.h"
 
 namespace halflight {
 namespace {
@@ -87,22 +86,16 @@ EmitterTree::EmitterTree(const Visibility& visibility, std::vector<EmittingSide>
     const Vec3 middle = (a + b + c) / 3.f;
     const float size = 2.f * std::max({glm::distance(a, middle), glm::distance(b, middle),
                                        glm::distance(c, middle)});
-    shapes_.push_back({middle, normal_of(e), size, 0.f});
+    shapes_.push_back({middle, normal_of(e), size});
   }
-  if (visibility.mode() == VisibilityMode::exact) return;
-  const IdVector<TriangleId, float> widths = emitter_widths(*world_);
-  for (std::size_t i = 0; i < emitters_.size(); ++i)
-    shapes_[i].width = widths[emitters_[i].triangle];
 }
 
 // Share of the light from y on an emitter that arrives.
 float EmitterTree::seen(std::uint32_t emitter, const Vec3& from, const Vec3& y,
                         float feature_size) const {
-  const Shape& shape = shapes_[emitter];
-  const Vec3 to = world_->rays.lift(y, shape.normal);
-  if (!(feature_size > 0.f)) return world_->rays.transmittance(from, to);
-  const float cosine = glm::dot(glm::normalize(from - to), shape.normal);
-  return visibility_->transmittance({from, to, feature_size, shape.width * std::abs(cosine)});
+  const Vec3 to = world_->rays.lift(y, shapes_[emitter].normal);
+  const float size = visibility_->emitter_size(emitters_[emitter].triangle, from, to);
+  return visibility_->transmittance({from, to, feature_size, size});
 }
 
 Vec3 EmitterTree::normal_of(const EmittingSide& e) const {

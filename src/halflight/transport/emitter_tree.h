@@ -47,9 +47,9 @@ class EmitterTree {
   EmitterTree(const Visibility& visibility, std::vector<EmittingSide> emitters);
   bool empty() const { return emitters_.empty(); }
 
-  // Irradiance at x with unit normal n from all emitting surfaces, shadows by exact rays. With the
-  // same shift everywhere there is no noise, and penumbrae come in as many steps as there are rays;
-  // different shifts make estimates that average out.
+  // Irradiance at x with unit normal n from all emitting surfaces, shadows by the visibility. With
+  // the same shift everywhere there is no noise, and penumbrae come in as many steps as there are
+  // rays; different shifts make estimates that average out.
   Rgb irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options,
                  Vec2 shift = Vec2(0.5f)) const;
 
@@ -85,8 +85,7 @@ class EmitterTree {
 
   struct Shape {
     Vec3 middle, normal;
-    float size = 0.f;   // diameter about the middle
-    float width = 0.f;  // smallest of the whole emitter that it is a part of, roughly
+    float size = 0.f;  // diameter about the middle
   };
 
   const Visibility* visibility_;

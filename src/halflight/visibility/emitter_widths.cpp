@@ -1,12 +1,9 @@
 #include "halflight/visibility/emitter_widths.h"
 
-#include "halflight/hierarchy/bodies.h"
-
 namespace halflight {
 
-IdVector<TriangleId, float> emitter_widths(const World& world) {
+IdVector<TriangleId, float> emitter_widths(const World& world, const Bodies& bodies) {
   const Geometry& g = world.geometry;
-  const Bodies bodies = find_bodies(g);
   const auto emits = [&](TriangleId t) { return world.scene.materials[g.materials[t]].emits(); };
   IdVector<BodyId, Bounds3f> boxes(bodies.members.size());
   for (std::size_t i = 0; i < g.triangles.size(); ++i)

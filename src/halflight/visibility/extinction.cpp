@@ -1,7 +1,6 @@
 #include "halflight/visibility/extinction.h"
 
 #include "halflight/base/parallel.h"
-#include "halflight/hierarchy/bodies.h"
 #include "halflight/rays/sampling.h"
 
 namespace halflight {
@@ -27,8 +26,8 @@ float mean_opacity(const Scene& scene, const Geometry& g, TriangleId t) {
   return sum / static_cast<float>(kOpacitySamples);
 }
 
-IdVector<TriangleId, float> blocking_areas(const Scene& scene, const Geometry& g) {
-  const Bodies bodies = find_bodies(g);
+IdVector<TriangleId, float> blocking_areas(const Scene& scene, const Geometry& g,
+                                           const Bodies& bodies) {
   IdVector<TriangleId, float> areas(g.triangles.size());
   parallel_for(g.triangles.size(), 1024, [&](std::size_t i) {
     const TriangleId t(i);

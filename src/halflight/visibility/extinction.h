@@ -5,6 +5,7 @@
 
 #include "halflight/base/ids.h"
 #include "halflight/base/vec.h"
+#include "halflight/hierarchy/bodies.h"
 #include "halflight/scene/geometry.h"
 
 namespace halflight {
@@ -13,7 +14,8 @@ namespace halflight {
 // A ray that crosses a closed body meets it twice, and what the first side has stopped the second
 // cannot stop again: there it is o (2 - o) A / 4, for opaque bodies the paper's A / 4. Which bodies
 // are closed is decided by their topology (hierarchy/bodies.h).
-IdVector<TriangleId, float> blocking_areas(const Scene& scene, const Geometry& geometry);
+IdVector<TriangleId, float> blocking_areas(const Scene& scene, const Geometry& geometry,
+                                           const Bodies& bodies);
 
 // kappa in 1/m: transmittance over a length l is exp(-kappa l). Exact for small bodies that are
 // spread evenly and face all ways.

@@ -36,7 +36,7 @@ class MeasuredTree {
       : surfaces_(surfaces), tree_(tree), facts_(tree.clusters.size()) {
     rank_.resize(surfaces.surfaces.size());
     blocking_.resize(surfaces.surfaces.size());
-    const auto areas = blocking_areas(world.scene, world.geometry);
+    const auto areas = blocking_areas(world.scene, world.geometry, surfaces.bodies);
     for (std::size_t t = 0; t < areas.size(); ++t)
       blocking_[surfaces.of_triangle[TriangleId(t)].value] += areas[TriangleId(t)];
     visit();

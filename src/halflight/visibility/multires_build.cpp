@@ -34,7 +34,7 @@ class MultiresBuilder {
   MultiresBuilder(const Scene& scene, const Geometry& geometry, const Surfaces& surfaces,
                   const ClusterTree& clusters)
       : scene_(scene), geometry_(geometry), surfaces_(surfaces), clusters_(clusters) {
-    areas_ = blocking_areas(scene, geometry);
+    areas_ = blocking_areas(scene, geometry, surfaces.bodies);
     if (!geometry.triangles.empty())
       inflation_ = kInflation * max_component(glm::max(glm::abs(geometry.bounds.lower),
                                                        glm::abs(geometry.bounds.upper)));

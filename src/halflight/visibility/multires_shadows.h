@@ -10,7 +10,8 @@ namespace halflight {
 class MultiresShadows final : public ShadowTest {
  public:
   // Refers to the visibility.
-  MultiresShadows(const Visibility& visibility, float feature_size);
+  MultiresShadows(const Visibility& visibility, float feature_size)
+      : visibility_(&visibility), feature_size_(feature_size) {}
 
   float from_emitter(const Vec3& from, const Vec3& to, TriangleId emitter) const override;
   float from_direction(const Vec3& from, const Vec3& direction) const override;
@@ -18,7 +19,6 @@ class MultiresShadows final : public ShadowTest {
  private:
   const Visibility* visibility_;
   float feature_size_;
-  IdVector<TriangleId, float> widths_;
 };
 
 }  // namespace halflight

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "halflight/hierarchy/bodies.h"
-
 namespace halflight {
 namespace {
 
@@ -14,11 +12,10 @@ constexpr float kLargestLeaf = 3e-3f;  // of the scene's diagonal, however large
 
 }  // namespace
 
-ClutterMeasure measure_clutter(const World& world, float feature_size) {
+ClutterMeasure measure_clutter(const World& world, const Bodies& bodies, float feature_size) {
   const Geometry& g = world.geometry;
   ClutterMeasure measure;
   if (g.triangles.size() < kLeastSheets) return measure;
-  const Bodies bodies = find_bodies(g);
   const float largest = std::min(feature_size, kLargestLeaf * g.bounds.diagonal());
   double sheets = 0.0;
   for (std::size_t i = 0; i < g.triangles.size(); ++i) {

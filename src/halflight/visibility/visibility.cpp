@@ -1,13 +1,22 @@
 #include "halflight/visibility/visibility.h"
 
+#include "halflight/visibility/emitter_widths.h"
+
 namespace halflight {
 
 Visibility::Visibility(const World& world, const Surfaces& surfaces, const ClusterTree& clusters,
                        VisibilityMode mode, const MultiresOptions& options)
     : world_(&world), mode_(mode) {
-  if (mode != VisibilityMode::exact)
-    tree_ =
-        std::make_unique<MultiresTree>(world.scene, world.geometry, surfaces, clusters, options);
+  if (mode == VisibilityMode::exact) return;
+  tree_ = std::make_unique<MultiresTree>(world.scene, world.geometry, surfaces, clusters, options);
+  emitter_widths_ = emitter_widths(world, surfaces.bodies);
+}
+
+float Visibility::emitter_size(TriangleId triangle, const Vec3& receiver,
+                               const Vec3& emitter) const {
+  if (mode_ == VisibilityMode::exact) return 0.f;
+  const Vec3 normal = glm::normalize(world_->geometry.scaled_normal(triangle));
+  return emitter_widths_[triangle] * std::abs(glm::dot(glm::normalize(receiver - emitter), normal));
 }
 
 float Visibility::through_tree(const VisibilityRay& ray, const StopRule& rule) const {

@@ -42,6 +42,9 @@ class Visibility {
   std::uint64_t ray_total() const { return rays_.total(); }
   std::uint64_t node_total() const { return nodes_.total(); }
 
+  // RayEnds::emitter_size of a place on an emitting triangle: the width of the whole emitter,
+  // foreshortened as the ray sees it. 0 in exact mode, which does not ask.
+  float emitter_size(TriangleId triangle, const Vec3& receiver, const Vec3& emitter) const;
   // Share of the light that arrives, in [0, 1].
   float transmittance(const RayEnds& ends) const;
   // From an emitter at infinity (unit direction towards it), seen under an angular diameter in
@@ -66,6 +69,7 @@ class Visibility {
   const World* world_;
   VisibilityMode mode_ = VisibilityMode::exact;
   std::unique_ptr<const MultiresTree> tree_;
+  IdVector<TriangleId, float> emitter_widths_;
   mutable Counter rays_, nodes_;
 };
 
