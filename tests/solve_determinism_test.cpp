@@ -21,7 +21,7 @@ Bits solve_crowd(LinkMaker links, int threads) {
   p.count = 400;
   const SolverState state =
       testing::solve(loose_triangles_scene(p), testing::options_of(links, 0.3f, 0.2f));
-  Bits bits{state.radiosity.raw(), state.irradiance.raw(), {}, state.links.size()};
+  Bits bits{state.radiosity.raw(), state.irradiance.raw(), {}, state.link_total()};
   const SolutionReader reader(state, kPixelReading);
   for (const Reading& r : reader(testing::scatter_sensors(state, 50)))
     bits.readings.push_back(r.irradiance());

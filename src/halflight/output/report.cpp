@@ -44,24 +44,28 @@ json settings(const SolverState& state) {
           {"links", state.options.links == LinkMaker::refined ? "refined" : "sampled"},
           {"visibility", name_of(state.visibility->mode())},
           {"hierarchy", name_of(state.options.hierarchy)},
-          {"passes", state.options.passes},
+          {"levels", state.options.levels},
           {"sky", rgb(state.world->scene.sky)},
           {"threads", thread_count()},
           {"instruction_set", RayScene::instruction_set()}};
 }
 
 json history(const SolverState& state) {
-  json passes = json::array();
-  for (const PassRecord& p : state.history)
-    passes.push_back({{"irradiance_threshold", p.irradiance_threshold},
-                      {"pairs", p.pairs},
-                      {"links", p.links},
-                      {"elements", p.elements},
-                      {"rays", p.rays},
-                      {"sweeps", p.sweeps},
-                      {"refine_seconds", p.refine_seconds},
-                      {"sweep_seconds", p.sweep_seconds}});
-  return passes;
+  json iterations = json::array();
+  for (const IterationRecord& i : state.history)
+    iterations.push_back({{"stage", name_of(i.stage)},
+                          {"irradiance_threshold", i.irradiance_threshold},
+                          {"links_refined", i.refined},
+                          {"pairs", i.pairs},
+                          {"links", i.links},
+                          {"elements", i.elements},
+                          {"rays", i.rays},
+                          {"sweeps", i.sweeps},
+                          {"predicted_seconds", i.predicted_seconds},
+                          {"seconds", i.seconds()},
+                          {"refine_seconds", i.refine_seconds},
+                          {"sweep_seconds", i.sweep_seconds}});
+  return iterations;
 }
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
@@ -101,7 +105,7 @@ std::string Report::json(const SolverState& state) const {
   report["cpu_seconds"] = cpu_seconds();
   report["peak_rss_bytes"] = peak_rss_bytes();
   int sweeps = 0;
-  for (const PassRecord& p : state.history) sweeps += p.sweeps;
+  for (const IterationRecord& i : state.history) sweeps += i.sweeps;
   const std::uint64_t through_clusters = state.visibility->ray_total();
   report["rays"] = {
       {"exact", state.world->rays.ray_total()},
@@ -110,7 +114,7 @@ std::string Report::json(const SolverState& state) const {
                             static_cast<double>(std::max<std::uint64_t>(1, through_clusters))}};
   report["clusters"] = state.tree.cluster_total();
   report["elements"] = state.tree.size();
-  report["links"] = state.links.size();
+  report["links"] = state.link_total();
   report["sweeps"] = sweeps;
   const EnergyBalance energy = energy_balance(state);
   report["energy"] = {{"emitted", rgb(energy.emitted)},

@@ -109,6 +109,7 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   state.irradiance.resize(n);
   state.radiosity.resize(n);
   state.tolerance.resize(n);
+  state.sampled.resize(n, 0);
   parallel_for(split_cells.size(), 64, [&](std::size_t i) {
     const ElementId parent = split_cells[i];
     for (const ElementId child : state.tree[parent].children()) {
@@ -117,6 +118,7 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
       if (!state.outer_light.empty()) state.outer_light[child] = state.outer_light[parent];
       state.irradiance[child] = state.irradiance[parent];
       state.tolerance[child] = state.tolerance[parent];
+      state.sampled[child] = state.sampled[parent];
       state.radiosity[child] =
           state.exitance[child] + state.reflectance[child] * state.irradiance[child];
     }

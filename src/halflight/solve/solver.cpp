@@ -1,6 +1,9 @@
 #include "halflight/solve/solver.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <utility>
 
 #include "halflight/base/parallel.h"
 #include "halflight/hierarchy/live_sides.h"
@@ -18,12 +21,18 @@ namespace {
 // irradiance_threshold = this * error * mean irradiance. Calibrated against the reference, see
 // docs/design/refinement.md.
 constexpr float kThresholdPerError = 0.02f;
-constexpr float kThresholdRatio = 4.f;  // between passes
-constexpr float kBlindCells = 8.f;      // RefineOptions::largest_blind_cell in feature sizes
-constexpr float kClusterSizes = 1.f;    // SampledLinkOptions::largest_cluster in feature sizes
+constexpr float kThresholdRatio = 4.f;  // between levels
+// Of the first iteration to the first level, when iterations are to be short.
+constexpr float kFirstThreshold = 16.f;
+constexpr float kBlindCells = 8.f;    // RefineOptions::largest_blind_cell in feature sizes
+constexpr float kClusterSizes = 1.f;  // SampledLinkOptions::largest_cluster in feature sizes
 constexpr float kLeastTolerance = 0.15f;
 constexpr float kSweepTolerance = 2e-4f;
 constexpr int kMostSweeps = 60;
+constexpr int kSweepsOfShortIteration = 2;
+constexpr int kFirstGuessOfSweeps = 10;
+constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kReceiversAtOnce = 1 << 14;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -78,37 +87,266 @@ void update_tolerance(SolverState& state, float mean) {
   }
 }
 
-// Moves out of the table what the present radiosities no longer justify.
-std::vector<ElementPair> take_failing_links(SolverState& state, float threshold,
-                                            std::vector<ReceiverLink>& kept) {
-  std::vector<ElementPair> failing;
-  for (const ReceiverLink& l : state.links.release()) {
-    const bool awakened = !l.link.sampled() && average(state.radiosity[l.link.source]) > 0.f;
-    if (awakened || weighted_error(state.tree, l.receiver, l.link, state.radiosity) >
-                        state.tolerance[l.receiver] * threshold)
-      failing.push_back({l.receiver, l.link.source});
-    else
-      kept.push_back(l);
-  }
-  return failing;
+// Levels whose links are refined; with sampled links the last one only shapes elements.
+int levels_of_links(const SolveOptions& options) {
+  return options.levels - (options.links == LinkMaker::sampled ? 1 : 0);
 }
 
-// The elements stay; light from emitters is read exactly on each, the rest travels along rays.
-std::vector<ReceiverLink> replace_by_sampled_links(SolverState& state, float threshold) {
-  const EmitterTree emitters(*state.visibility, find_emitters(*state.world));
-  state.emission_is_given = true;
-  std::fill(state.given_light_known.begin(), state.given_light_known.end(), 0);
+// Threshold and tolerances of the level that comes next, by the light that is there now.
+void begin_level(SolverState& state) {
+  const bool first = state.history.empty();
+  if (first) update_given_light(state, kInfinity, nullptr);
+  const float mean = first ? first_guess_of_irradiance(state) : mean_irradiance(state);
+  if (!first) update_tolerance(state, mean);
+  const int levels_left = state.options.levels - 1 - state.schedule.level;
+  state.schedule.irradiance_threshold =
+      kThresholdPerError * state.options.error * mean *
+      std::pow(kThresholdRatio, static_cast<float>(std::max(0, levels_left)));
+  if (first) pull(state);
+}
+
+// Error of a link in units of what its receiver tolerates at this level. Links whose source was
+// dark until now have to be sampled in any case.
+float relative_error(const SolverState& state, const ReceiverLink& l) {
+  const float tolerated = state.tolerance[l.receiver] * state.schedule.irradiance_threshold;
+  const float error =
+      weighted_error(state.tree, l.receiver, l.link, state.radiosity) / std::max(tolerated, 1e-30f);
+  const bool awakened = !l.link.sampled() && average(state.radiosity[l.link.source]) > 0.f;
+  return awakened ? std::max(error, std::nextafter(1.f, 2.f)) : error;
+}
+
+std::vector<float> relative_errors(const SolverState& state,
+                                   const std::vector<ReceiverLink>& links) {
+  std::vector<float> errors(links.size());
+  parallel_for(links.size(), 4096,
+               [&](std::size_t i) { errors[i] = relative_error(state, links[i]); });
+  return errors;
+}
+
+struct WorstLinks {
+  std::vector<ReceiverLink> links;  // in receiver order
+  std::vector<ReceiverLink> others;
+  float threshold = 1.f;  // above which they lie, relative to the level's
+  bool all = true;        // that lie above it
+};
+
+// The k links of the largest errors above the level's threshold, to within a bin of the histogram.
+WorstLinks find_worst_links(const SolverState& state, const std::vector<ReceiverLink>& links,
+                            std::size_t k) {
+  const std::vector<float> errors = relative_errors(state, links);
+  ErrorHistogram histogram;
+  for (const float e : errors)
+    if (e > 1.f) histogram.add(e);
+  WorstLinks worst;
+  worst.threshold = histogram.threshold_for(k);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const bool above = errors[i] > worst.threshold;
+    if (above && worst.links.size() == k) worst.all = false;
+    (above && worst.all ? worst.links : worst.others).push_back(links[i]);
+  }
+  return worst;
+}
+
+std::vector<ElementPair> pairs_of(const std::vector<ReceiverLink>& links) {
+  std::vector<ElementPair> pairs(links.size());
+  for (std::size_t i = 0; i < links.size(); ++i)
+    pairs[i] = {links[i].receiver, links[i].link.source};
+  return pairs;
+}
+
+// Of the links that do not hold at this level, which stay; the worst last.
+std::vector<ElementPair> failing_pairs(SolverState& state) {
+  std::vector<ReceiverLink> links = state.links.release();
+  const std::vector<float> errors = relative_errors(state, links);
+  std::vector<std::uint32_t> order;
+  for (std::size_t i = 0; i < links.size(); ++i)
+    if (errors[i] > 1.f) order.push_back(static_cast<std::uint32_t>(i));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return errors[a] < errors[b]; });
+  std::vector<ElementPair> pairs;
+  for (const std::uint32_t i : order) pairs.push_back({links[i].receiver, links[i].link.source});
+  state.links.append(links);
+  return pairs;
+}
+
+// Appends the links that come of the pairs, none when only the shape of elements is wanted.
+void refine_pairs(SolverState& state, std::vector<ElementPair> pairs, bool shape_only,
+                  const Progress& progress, std::vector<ReceiverLink>& links,
+                  IterationRecord& record) {
+  RefineOptions options;
+  options.irradiance_threshold = record.irradiance_threshold;
+  options.feature_size = state.options.feature_size;
+  options.smallest_cell = smallest_cell(state);
+  options.smallest_cluster = kClusterSizes * state.options.feature_size;
+  options.largest_blind_cell = 2.f * kBlindCells * smallest_cell(state);
+  options.most_links = state.options.most_links;
+  options.shape_only = shape_only;
+  record.refined = pairs.size();
+  RefineCounts counts;
+  refine(
+      state.tree, *state.visibility, state.radiosity, state.opacity, state.tolerance,
+      std::move(pairs), options,
+      [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress, links, counts);
+  record.pairs = counts.pairs;
+  update_given_light(state, record.irradiance_threshold, nullptr);
+}
+
+// Refines the k worst links; ends the level when there are no more.
+void refine_links(SolverState& state, std::size_t k, const Progress& progress,
+                  IterationRecord& record) {
+  Schedule& todo = state.schedule;
+  std::vector<ReceiverLink> links;
+  bool level_done = true;
+  if (todo.pairs.empty()) {
+    WorstLinks worst = find_worst_links(state, state.links.release(), k);
+    todo.pairs = pairs_of(worst.links);
+    links = std::move(worst.others);
+    record.irradiance_threshold *= worst.threshold;
+    level_done = worst.all && worst.threshold == 1.f;
+  } else if (k < kUnlimited) {
+    record.irradiance_threshold *= kFirstThreshold;
+    level_done = false;
+  }
+  refine_pairs(state, std::exchange(todo.pairs, {}), false, progress, links, record);
+  state.links.append(links);
+  if (!level_done) return;
+  todo.irradiance_threshold = 0.f;
+  if (++todo.level < levels_of_links(state.options)) return;
+  todo.stage = state.options.links == LinkMaker::sampled ? Stage::shape : Stage::converge;
+}
+
+// Elements for the last level, by k of the links that would not hold there, the worst first.
+void shape_elements(SolverState& state, std::size_t k, const Progress& progress,
+                    IterationRecord& record) {
+  Schedule& todo = state.schedule;
+  const std::size_t n = std::min(k, todo.pairs.size());
+  const auto last = todo.pairs.end();
+  std::vector<ElementPair> pairs(last - static_cast<std::ptrdiff_t>(n), last);
+  todo.pairs.resize(todo.pairs.size() - n);
+  std::vector<ReceiverLink> none;
+  refine_pairs(state, std::move(pairs), true, progress, none, record);
+  if (todo.pairs.empty()) todo.stage = Stage::sample;
+}
+
+SampledLinkOptions sampled_link_options(const SolverState& state) {
   SampledLinkOptions options;
   options.feature_size = state.options.feature_size;
   options.largest_cluster = kClusterSizes * state.options.feature_size;
-  give_light_to_clusters(state, emitters, choose_receivers(state.tree, options.largest_cluster),
-                         options);
-  update_given_light(state, threshold, &emitters);
-  return sample_links(state.tree, state.world->rays, state.opacity,
-                      choose_receivers(state.tree, options.largest_cluster), options);
+  return options;
+}
+
+// From now on these elements and all below them receive by sampled links, and light from emitters
+// is read exactly on each.
+void hand_over(SolverState& state, const std::vector<ElementId>& receivers) {
+  std::vector<ElementId> open = receivers;
+  while (!open.empty()) {
+    const ElementId e = open.back();
+    open.pop_back();
+    state.sampled[e] = 1;
+    state.given_light_known[e] = 0;
+    for (const ElementId child : state.tree[e].children()) open.push_back(child);
+  }
+}
+
+// How far the schedule has got: most of the time goes into sampled links.
+double share_done(const SolverState& state) {
+  const Schedule& todo = state.schedule;
+  const bool samples = state.options.links == LinkMaker::sampled;
+  const double of_refinement = samples ? 0.3 : 1.0;
+  switch (todo.stage) {
+    case Stage::refine:
+    case Stage::shape:
+      return of_refinement * todo.level / std::max(1, state.options.levels);
+    case Stage::sample: {
+      const auto left = static_cast<double>(todo.receivers.size());
+      const auto total = static_cast<double>(std::max<std::size_t>(1, todo.receiver_total));
+      return of_refinement + (0.95 - of_refinement) * (1.0 - left / total);
+    }
+    case Stage::converge:
+      return 0.95;
+    case Stage::done:
+      break;
+  }
+  return 1.0;
+}
+
+// Gives sampled links to the next k receivers.
+void sample_receivers(SolverState& state, std::size_t k, IterationRecord& record) {
+  std::vector<ElementId>& waiting = state.schedule.receivers;
+  const std::size_t n = std::min(k, waiting.size());
+  const std::vector<ElementId> receivers(waiting.end() - static_cast<std::ptrdiff_t>(n),
+                                         waiting.end());
+  waiting.resize(waiting.size() - n);
+  const SampledLinkOptions options = sampled_link_options(state);
+  hand_over(state, receivers);
+  give_light_to_clusters(state, *state.emitters, receivers, options);
+  update_given_light(state, record.irradiance_threshold, state.emitters.get());
+  state.sampled_links.append(
+      sample_links(state.tree, state.world->rays, state.opacity,
+                   choose_receivers(state.tree, receivers, options.largest_cluster), options));
+  record.refined += n;
+}
+
+// Without limit in portions all the same, to be able to stop.
+void sample_links(SolverState& state, std::size_t k, const Progress& progress,
+                  IterationRecord& record) {
+  Schedule& todo = state.schedule;
+  for (std::size_t left = k; left > 0 && !todo.receivers.empty() && !progress.cancelled();) {
+    const std::size_t n = std::min(left, kReceiversAtOnce);
+    sample_receivers(state, n, record);
+    left -= n;
+    progress.report("solve", share_done(state));
+  }
+  if (!todo.receivers.empty()) return;
+  state.links = {};
+  todo.stage = Stage::converge;
+}
+
+int expected_sweeps(const SolverState& state, const IterationBudget& budget) {
+  if (state.schedule.stage == Stage::shape) return 0;
+  if (budget.limited()) return kSweepsOfShortIteration;
+  for (auto i = state.history.rbegin(); i != state.history.rend(); ++i)
+    if (i->sweeps > 0) return i->sweeps;
+  return kFirstGuessOfSweeps;
+}
+
+// Links to refine, pairs to shape or receivers to sample that the budget has room for; at least 1.
+std::size_t units_within(const SolverState& state, const IterationBudget& budget, std::size_t size,
+                         int sweeps) {
+  const Stage stage = state.schedule.stage;
+  const std::size_t links = stage == Stage::sample && budget.links < kUnlimited
+                                ? budget.links / sampled_link_options(state).rays_per_cell
+                                : budget.links;
+  const std::size_t in_time = std::isfinite(budget.seconds)
+                                  ? state.costs.affordable(stage, budget.seconds, size, sweeps)
+                                  : kUnlimited;
+  return std::max<std::size_t>(1, std::min(links, in_time));
+}
+
+// What a stage needs to begin with.
+void begin_stage(SolverState& state, bool in_short_iterations) {
+  Schedule& todo = state.schedule;
+  if (todo.irradiance_threshold == 0.f) {
+    begin_level(state);
+    if (todo.stage == Stage::shape && state.links.size() > 0) todo.pairs = failing_pairs(state);
+    update_given_light(state, todo.irradiance_threshold, nullptr);
+  }
+  if (todo.stage == Stage::sample && todo.receivers.empty()) {
+    state.emitters = std::make_shared<EmitterTree>(*state.visibility, find_emitters(*state.world));
+    todo.receivers = choose_receivers(state.tree, {state.tree.root()},
+                                      sampled_link_options(state).largest_cluster);
+    todo.receiver_total = todo.receivers.size();
+    // Large cells show the most; rays of neighbours meet the same places.
+    if (in_short_iterations)
+      std::stable_sort(todo.receivers.begin(), todo.receivers.end(), [&](ElementId a, ElementId b) {
+        return std::ilogb(state.tree[a].area) < std::ilogb(state.tree[b].area);
+      });
+  }
 }
 
 }  // namespace
+
+bool IterationBudget::limited() const { return std::isfinite(seconds) || links < kUnlimited; }
 
 SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options) {
   auto surfaces = std::make_shared<const Surfaces>(build_surfaces(world->geometry));
@@ -131,67 +369,58 @@ SolverState make_state(const std::shared_ptr<const World>& world, const SolveOpt
   if (has_outer_light(*world)) state.outer_light.resize(n, Rgb(0.f));
   state.irradiance.resize(n, Rgb(0.f));
   state.tolerance.resize(n, 1.f);
+  state.sampled.resize(n, 0);
   state.radiosity.resize(n, Rgb(0.f));
   parallel_for(n, 256, [&](std::size_t i) {
     if (!state.tree[ElementId(i)].is_cluster()) evaluate_material(state, ElementId(i));
   });
   pull(state);
+  state.schedule.pairs = {{state.tree.root(), state.tree.root()}};
+  if (levels_of_links(state.options) == 0) state.schedule.stage = Stage::shape;
   return state;
 }
 
-void advance(SolverState& state, const Progress& progress) {
+void advance(SolverState& state, const Progress& progress, const IterationBudget& budget) {
+  Schedule& todo = state.schedule;
+  if (state.done()) return;
   const auto start = std::chrono::steady_clock::now();
-  const int pass = static_cast<int>(state.history.size());
-  const auto report = [&](double share_of_pass) {
-    progress.report("solve", (pass + share_of_pass) / std::max(1, state.options.passes));
-  };
-  report(0.0);
   const std::uint64_t rays_before = state.world->rays.ray_total();
-  PassRecord record;
-  const float mean = pass == 0 ? first_guess_of_irradiance(state) : mean_irradiance(state);
-  record.irradiance_threshold =
-      kThresholdPerError * state.options.error * mean *
-      std::pow(kThresholdRatio, static_cast<float>(std::max(0, state.options.passes - 1 - pass)));
+  begin_stage(state, budget.limited());
 
-  if (pass > 0) update_tolerance(state, mean);
-  update_given_light(state, record.irradiance_threshold, nullptr);
-  if (pass == 0) pull(state);
-
-  std::vector<ReceiverLink> links;
-  std::vector<ElementPair> pairs;
-  if (pass == 0)
-    pairs.push_back({state.tree.root(), state.tree.root()});
-  else
-    pairs = take_failing_links(state, record.irradiance_threshold, links);
-  RefineOptions refine_options;
-  refine_options.irradiance_threshold = record.irradiance_threshold;
-  refine_options.feature_size = state.options.feature_size;
-  refine_options.smallest_cell = smallest_cell(state);
-  refine_options.smallest_cluster = kClusterSizes * state.options.feature_size;
-  refine_options.largest_blind_cell = 2.f * kBlindCells * smallest_cell(state);
-  refine_options.most_links = state.options.most_links;
-  const bool replaced =
-      state.options.links == LinkMaker::sampled && pass + 1 == state.options.passes;
-  refine_options.shape_only = replaced;
-  RefineCounts counts;
-  refine(
-      state.tree, *state.visibility, state.radiosity, state.opacity, state.tolerance,
-      std::move(pairs), refine_options,
-      [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress, links, counts);
-  update_given_light(state, record.irradiance_threshold, nullptr);
-  if (replaced) links = replace_by_sampled_links(state, record.irradiance_threshold);
-  state.links = LinkTable(state.tree.size(), links);
-  report(0.8);
+  const Stage stage = todo.stage;
+  const std::size_t size = state.tree.size() + state.link_total();
+  const int sweeps = expected_sweeps(state, budget);
+  const std::size_t k = units_within(state, budget, size, sweeps);
+  IterationRecord record{.stage = stage, .irradiance_threshold = todo.irradiance_threshold};
+  if (stage == Stage::refine) refine_links(state, k, progress, record);
+  if (stage == Stage::shape) shape_elements(state, k, progress, record);
+  if (stage == Stage::sample) sample_links(state, k, progress, record);
+  if (stage != Stage::converge) state.row_limits.clear();
   record.refine_seconds = seconds_since(start);
+  // Of the units that were chosen, by what earlier iterations took.
+  record.predicted_seconds = state.costs.predict(stage, record.refined, size, sweeps);
+  const std::size_t new_size = state.tree.size() + state.link_total();
+  state.costs.learn(stage, record.refined, record.refine_seconds, size, new_size);
 
-  record.sweeps = sweep_to_convergence(state, kSweepTolerance, kMostSweeps);
+  // While only elements are shaped, nothing new arrives anywhere.
+  Sweeps swept;
+  if (stage != Stage::shape)
+    swept = sweep(state, kSweepTolerance, budget.limited() ? kSweepsOfShortIteration : kMostSweeps);
+  if (todo.stage == Stage::converge && (swept.converged || !budget.limited()))
+    todo.stage = Stage::done;
+  record.sweeps = swept.count;
   record.sweep_seconds = seconds_since(start) - record.refine_seconds;
-  record.links = state.links.size();
+  state.costs.learn_sweeps(new_size, swept.count, record.sweep_seconds);
+  record.links = state.link_total();
   record.elements = state.tree.size();
-  record.pairs = counts.pairs;
   record.rays = state.world->rays.ray_total() - rays_before;
   state.history.push_back(record);
-  report(1.0);
+  progress.report("solve", share_done(state));
+}
+
+double least_iteration_seconds(const SolverState& state) {
+  return state.costs.predict(state.schedule.stage, 1, state.tree.size() + state.link_total(),
+                             kSweepsOfShortIteration);
 }
 
 EnergyBalance energy_balance(const SolverState& state) {

@@ -1,7 +1,9 @@
-// The radiosity solver as a value: make_state, then advance pass by pass; every state in between is
-// a valid result. Hierarchical radiosity with clustering (paper sections 1 and 6; Sillion 1995).
+// The radiosity solver as a value: make_state, then advance by iterations; every state in between
+// is a valid result. Hierarchical radiosity with clustering (paper sections 1 and 6; Sillion 1995),
+// in iterations as short as the budget asks (paper section 6.2, progressive multi-gridding).
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -9,6 +11,8 @@
 #include "halflight/hierarchy/build_hierarchy.h"
 #include "halflight/hierarchy/elements.h"
 #include "halflight/rays/world.h"
+#include "halflight/solve/schedule.h"
+#include "halflight/transport/emitter_tree.h"
 #include "halflight/transport/link.h"
 #include "halflight/transport/refine.h"
 #include "halflight/visibility/visibility.h"
@@ -31,20 +35,8 @@ struct SolveOptions {
   float error = 0.05f;  // aimed-at relative RMS error of irradiance
   LinkMaker links = LinkMaker::sampled;
   HierarchyKind hierarchy = HierarchyKind::size_grid;  // who groups surfaces into clusters
-  int passes = 3;                                      // settings of the threshold, coarse to fine
+  int levels = 3;                                      // of the threshold, coarse to fine
   std::size_t most_links = 40'000'000;
-};
-
-// What one pass did (the report's history).
-struct PassRecord {
-  float irradiance_threshold = 0.f;
-  std::size_t links = 0;
-  std::size_t elements = 0;
-  std::uint64_t pairs = 0;
-  std::uint64_t rays = 0;
-  int sweeps = 0;
-  double refine_seconds = 0.0;
-  double sweep_seconds = 0.0;
 };
 
 struct SolverState {
@@ -57,26 +49,48 @@ struct SolverState {
   IdVector<ElementId, float> opacity{};    // of cells: share of the light that they stop
   IdVector<ElementId, Rgb> reflectance{};  // of cells, of all light that falls on them
   IdVector<ElementId, Rgb> exitance{};     // pi L of cells, times their opacity
-  // Irradiance of leaf cells that links do not carry: by punctual lights and the sky, and with
-  // sampled links by emitting surfaces too.
+  // 1: the light comes by sampled links, of the element or of the cluster around it, which carry
+  // reflected light only; 0: by refined links, which carry all.
+  IdVector<ElementId, std::uint8_t> sampled{};
+  // Irradiance of leaf cells that links do not carry: by punctual lights and the sky, and where
+  // links are sampled by emitting surfaces too.
   IdVector<ElementId, Rgb> given_light{};
   IdVector<ElementId, std::uint8_t> given_light_known{};
   IdVector<ElementId, Rgb> outer_light{};  // its part by punctual lights and the sky; empty: none
-  bool emission_is_given = false;          // links carry reflected light only
   IdVector<ElementId, Rgb> irradiance{};   // E of cells, from all links above and at them
   // By what the threshold on errors is multiplied where an element receives: 1, less in the dark.
   IdVector<ElementId, float> tolerance{};
   IdVector<ElementId, Rgb> radiosity{};  // B = rho E + pi L, mean over the element's area
-  LinkTable links{};
-  std::vector<PassRecord> history{};
+  LinkTable links{};                     // refined
+  LinkTable sampled_links{};             // grow row by row and take the place of the others
+  // By what the light of links is multiplied on leaf cells; see sweep.cpp. Empty: to be found anew.
+  IdVector<ElementId, float> row_limits{};
+  std::shared_ptr<const EmitterTree> emitters{};  // made when links are sampled
 
-  bool done() const { return static_cast<int>(history.size()) >= options.passes; }
+  Schedule schedule{};
+  CostModel costs{};
+  std::vector<IterationRecord> history{};
+
+  bool done() const { return schedule.stage == Stage::done; }
+  std::size_t link_total() const { return links.size() + sampled_links.size(); }
 };
 
 SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options);
 
-// Runs one pass: refine the links at the present radiosities, then sweep to convergence.
-void advance(SolverState& state, const Progress& progress);
+// What one iteration may cost. Without limits an iteration goes to the next level of the threshold.
+struct IterationBudget {
+  double seconds = std::numeric_limits<double>::infinity();     // kept as well as can be predicted
+  std::size_t links = std::numeric_limits<std::size_t>::max();  // refined or sampled: the paper's k
+  bool limited() const;
+};
+
+// Runs one iteration: refine links at the present radiosities, or sample some, then sweep; until
+// convergence when there is no limit. Which links are chosen depends on the number of links alone,
+// so a limit in seconds gives results that depend on the machine's speed.
+void advance(SolverState& state, const Progress& progress, const IterationBudget& budget = {});
+
+// What the shortest iteration would take at least, as learnt so far.
+double least_iteration_seconds(const SolverState& state);
 
 // Power in W (or lumens) over all cells.
 struct EnergyBalance {

@@ -21,19 +21,30 @@ struct ClusterNumbers {
   std::uint32_t operator[](ElementId e) const { return of_element[e.value]; }
 };
 
+// What an element sends along a link: everything, or along sampled links what it reflects.
+struct Sent {
+  const IdVector<ElementId, Rgb>& radiosity;
+  const IdVector<ElementId, Rgb>& exitance;
+  Rgb operator()(ElementId s, bool sampled) const {
+    return sampled ? radiosity[s] - exitance[s] : radiosity[s];
+  }
+};
+
 // I_r = sum of weight * sent(s) over the links of each element alone.
-template <class Sent>
+template <class Send>
 void gather(SolverState& state, const ClusterNumbers& number,
-            std::vector<DirectionalIrradiance>& arriving, const Sent& sent) {
+            std::vector<DirectionalIrradiance>& arriving, const Send& sent) {
   const ElementTree& tree = state.tree;
   parallel_for(tree.size(), kGrain, [&](std::size_t i) {
     const ElementId r(i);
+    const bool sampled = state.sampled[r] != 0;
+    const std::span<const Link> links = (sampled ? state.sampled_links : state.links).of(r);
     if (tree[r].is_cluster()) {
       DirectionalIrradiance& sum = arriving[number[r]];
       sum = {};
-      for (const Link& l : state.links.of(r)) {
+      for (const Link& l : links) {
         if (!l.sampled()) continue;
-        const Rgb e = l.weight * sent(l.source);
+        const Rgb e = l.weight * sent(l.source, sampled);
         if (l.direction.all_around())
           sum.add_isotropic(e);
         else
@@ -42,28 +53,34 @@ void gather(SolverState& state, const ClusterNumbers& number,
       return;
     }
     Rgb sum(0.f);
-    for (const Link& l : state.links.of(r))
-      if (l.sampled()) sum += l.weight * sent(l.source);
+    for (const Link& l : links)
+      if (l.sampled()) sum += l.weight * sent(l.source, sampled);
     state.irradiance[r] = sum;
   });
 }
 
-// Parents come before their children, so one pass in id order hands everything down.
+// Parents come before their children, so one pass in id order hands everything down: all but to
+// receivers whose sampled links bring the whole light.
 void push(SolverState& state, const ClusterNumbers& number,
           std::vector<DirectionalIrradiance>& arriving) {
   const ElementTree& tree = state.tree;
   const std::size_t top = tree.initial_size();
+  const auto inherits = [&](ElementId e) {
+    return state.sampled[e] == state.sampled[tree[e].parent];
+  };
   for (std::size_t i = 1; i < top; ++i) {
     const ElementId e(i);
-    if (tree[e].is_cluster()) arriving[number[e]] += arriving[number[tree[e].parent]];
+    if (tree[e].is_cluster() && inherits(e))
+      arriving[number[e]] += arriving[number[tree[e].parent]];
   }
   parallel_for(top, kGrain, [&](std::size_t i) {
     const ElementId e(i);
-    if (!tree[e].is_cluster())
+    if (!tree[e].is_cluster() && inherits(e))
       state.irradiance[e] += arriving[number[tree[e].parent]].irradiance(tree.normal(e));
   });
   for (std::size_t i = top; i < tree.size(); ++i)
-    state.irradiance[ElementId(i)] += state.irradiance[tree[ElementId(i)].parent];
+    if (inherits(ElementId(i)))
+      state.irradiance[ElementId(i)] += state.irradiance[tree[ElementId(i)].parent];
 }
 
 // By what the light that links bring to a leaf is multiplied, so that surroundings of radiosity 1
@@ -71,24 +88,25 @@ void push(SolverState& state, const ClusterNumbers& number,
 // estimated one by one, and those of a nook may add up to much more than 1: pale surfaces there
 // would feed each other without end. Sums a little above 1 are noise, and cutting only those would
 // lose energy.
-std::vector<float> limits(SolverState& state, const ClusterNumbers& number,
-                          std::vector<DirectionalIrradiance>& arriving) {
-  gather(state, number, arriving, [&](ElementId s) { return Rgb(state.opacity[s]); });
+IdVector<ElementId, float> find_row_limits(SolverState& state, const ClusterNumbers& number,
+                                           std::vector<DirectionalIrradiance>& arriving) {
+  gather(state, number, arriving, [&](ElementId s, bool) { return Rgb(state.opacity[s]); });
   push(state, number, arriving);
-  const float largest = state.emission_is_given ? 1.f : kLargestRow;
-  std::vector<float> limit(state.tree.size());
-  parallel_for(limit.size(), kGrain, [&](std::size_t i) {
-    limit[i] = std::min(1.f, largest / std::max(state.irradiance[ElementId(i)].r, 1e-6f));
+  IdVector<ElementId, float> limits(state.tree.size());
+  parallel_for(limits.size(), kGrain, [&](std::size_t i) {
+    const ElementId e(i);
+    const float largest = state.sampled[e] != 0 ? 1.f : kLargestRow;
+    limits[e] = std::min(1.f, largest / std::max(state.irradiance[e].r, 1e-6f));
   });
-  return limit;
+  return limits;
 }
 
 // Adds what arrives by no link to the limited light of the links.
-void finish_leaves(SolverState& state, const std::vector<float>& limit) {
-  parallel_for(limit.size(), kGrain, [&](std::size_t i) {
+void finish_leaves(SolverState& state) {
+  parallel_for(state.tree.size(), kGrain, [&](std::size_t i) {
     const ElementId e(i);
     if (!state.tree[e].is_cluster() && state.tree[e].is_leaf())
-      state.irradiance[e] = limit[i] * state.irradiance[e] + state.given_light[e];
+      state.irradiance[e] = state.row_limits[e] * state.irradiance[e] + state.given_light[e];
   });
 }
 
@@ -137,22 +155,21 @@ void pull(SolverState& state) {
   }
 }
 
-int sweep_to_convergence(SolverState& state, float tolerance, int most_sweeps) {
+Sweeps sweep(SolverState& state, float tolerance, int most_sweeps) {
   const ClusterNumbers number(state.tree);
   std::vector<DirectionalIrradiance> arriving(number.count);
-  const auto sent = [&](ElementId s) {
-    return state.emission_is_given ? state.radiosity[s] - state.exitance[s] : state.radiosity[s];
-  };
-  const std::vector<float> limit = limits(state, number, arriving);
-  for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
-    gather(state, number, arriving, sent);
+  if (state.row_limits.empty()) state.row_limits = find_row_limits(state, number, arriving);
+  Sweeps done;
+  while (done.count < most_sweeps && !done.converged) {
+    gather(state, number, arriving, Sent{state.radiosity, state.exitance});
     push(state, number, arriving);
-    finish_leaves(state, limit);
+    finish_leaves(state);
     const Change change = change_of_radiosity(state);
     pull(state);
-    if (change.absolute <= static_cast<double>(tolerance) * change.reflected) return sweep;
+    ++done.count;
+    done.converged = change.absolute <= static_cast<double>(tolerance) * change.reflected;
   }
-  return most_sweeps;
+  return done;
 }
 
 }  // namespace halflight

@@ -5,9 +5,12 @@
 
 namespace halflight {
 
-// Sweeps (Jacobi) until radiosity changes by less than `tolerance` of its mean, and returns how
-// often.
-int sweep_to_convergence(SolverState& state, float tolerance, int most_sweeps);
+struct Sweeps {
+  int count = 0;
+  bool converged = false;
+};
+// Sweeps (Jacobi) until radiosity changes by less than `tolerance` of its mean.
+Sweeps sweep(SolverState& state, float tolerance, int most_sweeps);
 
 // Radiosity of every element from the irradiance of the leaves: B = rho E + pi L, means upwards.
 void pull(SolverState& state);

@@ -40,20 +40,30 @@ Vec3 PackedDirection::unpack() const {
   return glm::normalize(v);
 }
 
-LinkTable::LinkTable(std::size_t element_count, const std::vector<ReceiverLink>& links)
-    : first_(element_count + 1, 0), links_(links.size()) {
-  for (const ReceiverLink& l : links) ++first_[l.receiver.value + 1];
-  for (std::size_t i = 0; i < element_count; ++i) first_[i + 1] += first_[i];
-  std::vector<std::uint64_t> next(first_.begin(), first_.end() - 1);
-  for (const ReceiverLink& l : links) links_[next[l.receiver.value]++] = l.link;
+void LinkTable::append(const std::vector<ReceiverLink>& links) {
+  std::vector<ElementId> receivers;
+  for (const ReceiverLink& l : links) {
+    if (!rows_.contains(l.receiver)) rows_.resize(l.receiver.value + 1);
+    if (rows_[l.receiver].count++ == 0) receivers.push_back(l.receiver);
+  }
+  std::uint64_t end = links_.size();
+  for (const ElementId r : receivers) {
+    rows_[r].first = end;
+    end += rows_[r].count;
+    rows_[r].count = 0;
+  }
+  links_.resize(end);
+  for (const ReceiverLink& l : links) {
+    Row& row = rows_[l.receiver];
+    links_[row.first + row.count++] = l.link;
+  }
 }
 
 std::vector<ReceiverLink> LinkTable::release() {
   std::vector<ReceiverLink> list;
   list.reserve(links_.size());
-  for (std::size_t r = 0; r + 1 < first_.size(); ++r)
-    for (std::uint64_t i = first_[r]; i < first_[r + 1]; ++i)
-      list.push_back({ElementId(r), links_[i]});
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    for (const Link& link : of(ElementId(r))) list.push_back({ElementId(r), link});
   *this = {};
   return list;
 }

@@ -27,7 +27,8 @@ struct Link {
   ElementId source;
   float weight = 0.f;         // form factor times visibility; perpendicular to the direction when
                               // the receiver is a cluster
-  float error = 0.f;          // of the weight, estimated; for unsampled links its upper bound
+  float error = 0.f;          // of the weight, estimated; for unsampled links its upper bound; 0
+                              // when nothing can be refined
   PackedDirection direction;  // from the receiver to the source; used by receiving clusters
   bool sampled() const { return weight >= 0.f; }
   static constexpr float kUnsampled = -1.f;  // weight of a link whose source was dark so far
@@ -38,23 +39,25 @@ struct ReceiverLink {
   Link link;
 };
 
-// All links, grouped by receiver.
+// Links grouped by receiver. Grows: each call of append adds whole rows.
 class LinkTable {
  public:
-  LinkTable() = default;
-  LinkTable(std::size_t element_count, const std::vector<ReceiverLink>& links);
-
   std::size_t size() const { return links_.size(); }
   std::span<const Link> of(ElementId receiver) const {
-    if (receiver.value + 1 >= first_.size()) return {};
-    return {links_.data() + first_[receiver.value],
-            first_[receiver.value + 1] - first_[receiver.value]};
+    if (!rows_.contains(receiver)) return {};
+    return {links_.data() + rows_[receiver].first, rows_[receiver].count};
   }
+  // All links of a receiver must be in the same call, in any order among those of others.
+  void append(const std::vector<ReceiverLink>& links);
   // Back to a plain list, in receiver order; leaves the table empty.
   std::vector<ReceiverLink> release();
 
  private:
-  std::vector<std::uint64_t> first_;
+  struct Row {
+    std::uint64_t first = 0;
+    std::uint32_t count = 0;
+  };
+  IdVector<ElementId, Row> rows_;
   std::vector<Link> links_;
 };
 

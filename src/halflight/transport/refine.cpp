@@ -58,12 +58,15 @@ class Oracle {
     const float strongest = scale * bounds.largest_weight;
     if (strongest <= kNegligible * threshold) return accept(r, s, 1, bounds);
     const bool clusters = tree[r].is_cluster() || tree[s].is_cluster();
-    if (bounds.touching && clusters)
-      return can_refine ? Verdict{finer, {}} : accept(r, s, kFinalSamples, bounds);
+    if (bounds.touching && clusters && can_refine) return {finer, {}};
     if (can_refine && strongest * bounds.kernel_variation > kHopeless * threshold &&
         bounds.kernel_variation >= 0.5f && clusters)
       return {finer, {}};
-    if (!can_refine) return accept(r, s, kFinalSamples, bounds);
+    if (!can_refine) {
+      Verdict verdict = accept(r, s, kFinalSamples, bounds);
+      if (!accept_all_) verdict.link.error = 0.f;
+      return verdict;
+    }
 
     TransferEstimate pilot = estimate_transfer(scene_, r, s, kSamples, kPilot);
     // A few samples on a large cell that agree may all have missed a shadow, or the light.

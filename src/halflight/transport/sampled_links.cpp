@@ -158,8 +158,9 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
   return light;
 }
 
-std::vector<ElementId> choose_receivers(const ElementTree& tree, float largest_cluster) {
-  std::vector<ElementId> receivers, open{tree.root()};
+std::vector<ElementId> choose_receivers(const ElementTree& tree, std::vector<ElementId> below,
+                                        float largest_cluster) {
+  std::vector<ElementId> receivers, open = std::move(below);
   while (!open.empty()) {
     const ElementId e = open.back();
     open.pop_back();

@@ -24,8 +24,10 @@ struct SampledLinkOptions {
   float feature_size = 0.f;  // of shadows in direct light that count; 0: all
 };
 
-// The cut of the tree that receives: small clusters, and leaf cells outside them.
-std::vector<ElementId> choose_receivers(const ElementTree& tree, float largest_cluster);
+// The cut of the tree below some elements that receives: small clusters, and leaf cells outside
+// them.
+std::vector<ElementId> choose_receivers(const ElementTree& tree, std::vector<ElementId> below,
+                                        float largest_cluster);
 
 // A ray stops in a cell in proportion to the cell's opacity, by which radiosity is already reduced:
 // the weight is divided by it. In receiver order, each receiver's links in ray order:
