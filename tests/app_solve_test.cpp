@@ -167,6 +167,22 @@ TEST_F(SolveCommand, ReportBalancesItsEnergy) {
   EXPECT_NEAR(report["energy"]["escaped"][0].get<double>(), 0.0, 0.32);
 }
 
+TEST_F(SolveCommand, ErrorIsMeasuredAndMet) {
+  ASSERT_EQ(run("solve room.obj --feature-size 20cm --error 8% --progress none --report r.json"),
+            0);
+  const auto report = read_json(path("r.json"));
+  EXPECT_LE(report["estimated_error"].get<double>(), 0.08);
+  EXPECT_GT(report["estimated_error_noise"].get<double>(), 0.0);
+}
+
+TEST_F(SolveCommand, UnreachableErrorEndsWithABudgetStatus) {
+  EXPECT_EQ(run("solve room.obj --feature-size 1 --error 0.01% --links 30k --progress none "
+                "--report r.json --points sensors.txt --points-out out.txt"),
+            4);
+  EXPECT_LE(read_json(path("r.json"))["links"].get<double>(), 40e3);
+  EXPECT_EQ(irradiance_of(text("out.txt")).size(), 30u);
+}
+
 TEST_F(SolveCommand, RejectsBadUseInOneLine) {
   for (const char* arguments :
        {"solve missing.obj", "solve room.obj --feature-size huge",
@@ -213,7 +229,7 @@ TEST_F(LongSolve, InterruptedWritesAValidResult) {
 TEST_F(LongSolve, DeadlineWritesAValidResult) {
   EXPECT_EQ(run(std::string(kLong) + " --time 1s"), 4);
   expect_valid_light();
-  EXPECT_LT(read_json(path("report.json"))["wall_seconds"].get<double>(), 10.0);
+  EXPECT_LT(read_json(path("report.json"))["wall_seconds"].get<double>(), 2.0);
 }
 
 TEST_F(SolveCommand, GenerousDeadlineMeetsTheGoal) {

@@ -16,6 +16,7 @@ TEST(Quantities, DurationsAreSecondsAndPercentagesShares) {
   EXPECT_DOUBLE_EQ(*parse_duration("2m"), 120.0);
   EXPECT_DOUBLE_EQ(*parse_duration("500ms"), 0.5);
   EXPECT_DOUBLE_EQ(*parse_percent("5%"), 0.05);
+  EXPECT_DOUBLE_EQ(*parse_count("250k"), 250000.0);
 }
 
 TEST(Quantities, NonsenseIsNamedInTheError) {

@@ -36,7 +36,7 @@ class Furnace : public ::testing::TestWithParam<std::tuple<LinkMaker, int>> {
 
 TEST_P(Furnace, EverySensorReadsTheSameLight) {
   const SolverState state = solved();
-  const auto irradiance = testing::read_irradiance(state, testing::scatter_sensors(state, 200));
+  const auto irradiance = testing::read_irradiance(state, scatter_points(state, 200));
   EXPECT_NEAR(testing::mean(irradiance) / kExpected, 1.f, tolerance());
   for (const float e : irradiance) EXPECT_NEAR(e / kExpected, 1.f, tolerance_at_sensors());
 }

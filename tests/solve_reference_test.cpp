@@ -30,7 +30,7 @@ struct Deviation {
 };
 
 Deviation compare(const SolverState& state, std::size_t sensors, std::uint32_t samples) {
-  const auto points = testing::scatter_sensors(state, sensors);
+  const auto points = scatter_points(state, sensors);
   const auto reference = path_traced(*state.world, points, samples);
   const auto solved = testing::read_irradiance(state, points);
   const float mean = testing::mean(reference);
@@ -149,7 +149,7 @@ TEST(EmitterTreeLight, IsTheDirectLightOfThePathTracer) {
     }
   const SolverState state =
       make_state(make_world(scene.scene), testing::options_of(LinkMaker::sampled, 0.1f));
-  const auto points = testing::scatter_sensors(state, 150);
+  const auto points = scatter_points(state, 150);
   const auto reference = path_traced(*state.world, points, 1u << 14);
   const EmitterTree emitters(*state.visibility, find_emitters(*state.world));
   std::vector<float> direct, deviation;
@@ -176,7 +176,7 @@ TEST(EmitterTreeLight, IsPiLWhereverOneLooksInAFurnace) {
   for (const auto& [options, tolerance] :
        {std::pair(DirectLightOptions{}, 0.01), std::pair(few_rays, 0.02)}) {
     double sum = 0.0;
-    const auto points = testing::scatter_sensors(state, 2000);
+    const auto points = scatter_points(state, 2000);
     for (std::size_t i = 0; i < points.size(); ++i)
       sum += static_cast<double>(
           emitters.irradiance(points[i].position, points[i].normal, options, random_shift(i)).g);

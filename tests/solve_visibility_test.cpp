@@ -1,6 +1,7 @@
 // Feature size and visibility through the whole solver: what is exact, what is saved, what is lost.
 #include <gtest/gtest.h>
 
+#include "halflight/rays/sampling.h"
 #include "halflight/scene/procedural/office.h"
 #include "halflight/scene/procedural/plants.h"
 #include "halflight/transport/sampled_links.h"

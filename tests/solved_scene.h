@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "halflight/output/estimated_error.h"
 #include "halflight/output/read_light.h"
-#include "halflight/rays/sampling.h"
 #include "halflight/solve/solver.h"
 
 namespace halflight::testing {
@@ -30,29 +30,6 @@ inline SolveOptions options_of(LinkMaker links, float feature_size, float error 
   options.feature_size = feature_size;
   options.error = error;
   return options;
-}
-
-// Points spread over the area of all sides that can see light.
-inline std::vector<ReadingPoint> scatter_sensors(const SolverState& state, std::size_t count) {
-  std::vector<ElementId> sides;
-  std::vector<float> cumulative;
-  float area = 0.f;
-  for (std::size_t i = 0; i < 2 * state.surfaces->surfaces.size(); ++i) {
-    const ElementId whole = state.tree.side_root(SideId(i));
-    if (!whole.valid()) continue;
-    sides.push_back(whole);
-    cumulative.push_back(area += state.tree[whole].area);
-  }
-  std::vector<ReadingPoint> points(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const float wanted =
-        area * (static_cast<float>(i) + to_unit_float(hash(i, 1))) / static_cast<float>(count);
-    const auto found = std::upper_bound(cumulative.begin(), cumulative.end() - 1, wanted);
-    const ElementId cell = sides[static_cast<std::size_t>(found - cumulative.begin())];
-    const CellPoint at = state.tree.sample(cell, random_shift(hash(i, 2)));
-    points[i] = {at.position, state.tree.normal(cell), at.triangle};
-  }
-  return points;
 }
 
 inline std::vector<float> read_irradiance(const SolverState& state,

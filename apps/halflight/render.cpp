@@ -10,6 +10,7 @@
 #include "halflight/rays/path_traced_image.h"
 #include "scene_arguments.h"
 #include "solve_arguments.h"
+#include "solve_run.h"
 #include "view_arguments.h"
 
 namespace halflight::app {
@@ -35,10 +36,15 @@ Result<void> check(const RenderArguments& arguments) {
 Result<Image> solved_image(const RenderArguments& arguments,
                            const std::shared_ptr<const World>& world, const View& view,
                            const Progress& progress) {
-  const Result<SolveOptions> options = resolve(arguments.solve);
-  if (!options) return tl::unexpected(options.error());
-  SolverState state = make_state(world, *options);
-  while (!state.done() && !progress.cancelled()) advance(state, progress);
+  const Result<SolvePlan> plan = resolve(arguments.solve);
+  if (!plan) return tl::unexpected(plan.error());
+  SolverState state = make_state(world, plan->options);
+  {
+    // A deadline ends the refinement and not the picture.
+    Progress solving(progress_listener(arguments.solve));
+    const Deadline deadline(solving, arguments.solve, Deadline::Clock::now());
+    run_to_goal(state, plan->goals, deadline, solving, false);
+  }
   const SolutionReader reader(state, kMeshReading);
   LitMeshOptions mesh_options;
   mesh_options.feature_size = state.options.feature_size;

@@ -19,6 +19,7 @@
 #include "interrupt.h"
 #include "scene_arguments.h"
 #include "solve_arguments.h"
+#include "solve_run.h"
 
 namespace halflight::app {
 namespace {
@@ -80,8 +81,8 @@ void warn_without_output(const Outputs& outputs) {
 Result<int> run(const SolveCommand& command) {
   Report report;
   const auto start = std::chrono::steady_clock::now();
-  Result<SolveOptions> options = resolve(command.solve);
-  if (!options) return tl::unexpected(options.error());
+  const Result<SolvePlan> plan = resolve(command.solve);
+  if (!plan) return tl::unexpected(plan.error());
   std::vector<Sensor> sensors;
   if (!command.outputs.points.empty()) {
     auto read = read_sensors(command.outputs.points);
@@ -100,17 +101,19 @@ Result<int> run(const SolveCommand& command) {
 
   Progress progress(progress_listener(command.solve));
   const Interruptible interruptible(progress);
+  const Deadline deadline(progress, command.solve, start);
   phase = std::chrono::steady_clock::now();
-  SolverState state = make_state(world, *options);
+  SolverState state = make_state(world, plan->options);
   report.end_phase("hierarchy", phase);
-  const Deadline deadline(progress, command.solve);
   phase = std::chrono::steady_clock::now();
-  while (!state.done() && !progress.cancelled()) advance(state, progress);
+  const SolveOutcome outcome =
+      run_to_goal(state, plan->goals, deadline, progress, !command.outputs.report.empty());
   report.end_phase("solve", phase);
 
   if (!sensors.empty()) {
     phase = std::chrono::steady_clock::now();
-    const std::vector<Rgb> irradiance = read_sensors_at(SolutionReader(state, {}), *world, sensors);
+    const std::vector<Rgb> irradiance =
+        read_sensors_at(SolutionReader(state, sensor_reading(state)), *world, sensors);
     auto written =
         write_sensor_table(command.outputs.points_out, sensor_table(sensors, irradiance));
     if (!written) return tl::unexpected(written.error());
@@ -120,10 +123,11 @@ Result<int> run(const SolveCommand& command) {
     auto written = write_lit(command.outputs.lit, state, report, progress);
     if (!written) return tl::unexpected(written.error());
   }
-  // Cancelled, the last pass and the mesh end early: what is written is valid, and coarser.
-  const int status = interruptible.interrupted() ? kInterrupted
-                     : progress.cancelled()      ? kBudgetEnded
-                                                 : kGoalMet;
+  // Cancelled, iterations and the mesh end early: what is written is valid, and coarser.
+  const int status = interruptible.interrupted()                 ? kInterrupted
+                     : progress.cancelled() || !outcome.goal_met ? kBudgetEnded
+                                                                 : kGoalMet;
+  if (outcome.error) report.set_estimated_error(*outcome.error);
   if (!command.outputs.report.empty()) {
     auto written = write_text_atomically(command.outputs.report, report.json(state));
     if (!written) return tl::unexpected(written.error());

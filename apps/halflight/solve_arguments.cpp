@@ -1,5 +1,6 @@
 #include "solve_arguments.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <map>
 #include <mutex>
@@ -11,22 +12,27 @@
 #include "terminal_progress.h"
 
 namespace halflight::app {
+namespace {
+
+constexpr double kLongestTime = 1e8;  // seconds; three years
+
+}  // namespace
 
 void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
   add_visibility_arguments(command, arguments.visibility, "multires");
-  command.add_option("--error", arguments.error, "relative RMS error of irradiance to aim at")
-      ->type_name("PCT")
-      ->capture_default_str();
+  command
+      .add_option(
+          "--error", arguments.error,
+          "relative RMS error of irradiance to measure and to stop at; without it about 5%, "
+          "not measured")
+      ->type_name("PCT");
   command.add_option("--time", arguments.time, "stop refining at this wall time, e.g. 10s")
       ->type_name("DUR");
-  const std::map<std::string, LinkMaker> makers{{"refined", LinkMaker::refined},
-                                                {"sampled", LinkMaker::sampled}};
   command
       .add_option("--links", arguments.links,
-                  "refined: by the error oracle alone; sampled: by rays on the elements it shaped")
-      ->transform(CLI::CheckedTransformer(makers).description(""))
-      ->type_name("refined|sampled")
-      ->default_str("sampled");
+                  "refined: by the error oracle alone; sampled: by rays on the elements it shaped "
+                  "(the default); N: no more than these")
+      ->type_name("refined|sampled|N");
   std::map<std::string, HierarchyKind> hierarchies;
   for (const NamedHierarchy& h : kHierarchies) hierarchies.emplace(h.name, h.kind);
   command.add_option("--hierarchy", arguments.hierarchy, "who groups surfaces into clusters")
@@ -43,22 +49,36 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
       ->capture_default_str();
 }
 
-Result<SolveOptions> resolve(const SolveArguments& arguments) {
-  SolveOptions options;
-  options.links = arguments.links;
-  options.visibility = arguments.visibility.mode.value_or(VisibilityMode::multires);
+Result<SolvePlan> resolve(const SolveArguments& arguments) {
+  SolvePlan plan;
+  plan.options.visibility = arguments.visibility.mode.value_or(VisibilityMode::multires);
   const Result<float> feature_size = resolve_feature_size(arguments.visibility);
   if (!feature_size) return tl::unexpected(feature_size.error());
-  options.feature_size = *feature_size;
-  options.hierarchy = arguments.hierarchy;
-  const Result<double> error = parse_percent(arguments.error);
-  if (!error) return tl::unexpected(error.error());
-  if (!(*error > 0.0)) return input_error("--error must be above zero", {}, "try 1%");
-  options.error = static_cast<float>(*error);
+  plan.options.feature_size = *feature_size;
+  plan.options.hierarchy = arguments.hierarchy;
+  if (!arguments.error.empty()) {
+    const Result<double> error = parse_percent(arguments.error);
+    if (!error) return tl::unexpected(error.error());
+    if (!(*error > 0.0)) return input_error("--error must be above zero", {}, "try 1%");
+    plan.options.error = static_cast<float>(*error);
+    plan.goals.error = plan.options.error;
+  }
+  for (const std::string& links : arguments.links) {
+    if (links == "refined" || links == "sampled") {
+      plan.options.links = links == "refined" ? LinkMaker::refined : LinkMaker::sampled;
+      continue;
+    }
+    const Result<double> most = parse_count(links);
+    if (!most || !(*most >= 1.0))
+      return input_error(fmt::format("--links '{}' is neither refined, sampled nor a count", links),
+                         {}, "write it like 'sampled' or 250k");
+    plan.goals.links = static_cast<std::size_t>(std::min(*most, 1e15));
+    plan.options.most_links = std::min(plan.options.most_links, *plan.goals.links);
+  }
   if (!arguments.time.empty())
     if (const Result<double> time = parse_duration(arguments.time); !time)
       return tl::unexpected(time.error());
-  return options;
+  return plan;
 }
 
 Progress::Listener progress_listener(const SolveArguments& arguments) {
@@ -71,20 +91,27 @@ Progress::Listener progress_listener(const SolveArguments& arguments) {
 }
 
 struct Deadline::Timer {
+  Clock::time_point end;
   std::mutex mutex;
   std::condition_variable changed;
   bool finished = false;
   std::thread thread;
 };
 
-Deadline::Deadline(Progress& progress, const SolveArguments& arguments) {
+Deadline::Deadline(Progress& progress, const SolveArguments& arguments, Clock::time_point start) {
   if (arguments.time.empty()) return;
-  const std::chrono::duration<double> time(*parse_duration(arguments.time));
+  const std::chrono::duration<double> time(std::min(*parse_duration(arguments.time), kLongestTime));
   timer_ = std::make_unique<Timer>();
-  timer_->thread = std::thread([&progress, time, timer = timer_.get()] {
+  timer_->end = start + std::chrono::duration_cast<Clock::duration>(time);
+  timer_->thread = std::thread([&progress, timer = timer_.get()] {
     std::unique_lock lock(timer->mutex);
-    if (!timer->changed.wait_for(lock, time, [&] { return timer->finished; })) progress.cancel();
+    if (!timer->changed.wait_until(lock, timer->end, [&] { return timer->finished; }))
+      progress.cancel();
   });
+}
+
+double Deadline::seconds_left() const {
+  return std::chrono::duration<double>(timer_->end - Clock::now()).count();
 }
 
 Deadline::~Deadline() {

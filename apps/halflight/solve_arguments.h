@@ -1,8 +1,11 @@
 // The arguments of everything that solves.
 #pragma once
 
+#include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 
@@ -15,25 +18,39 @@ namespace halflight::app {
 
 struct SolveArguments {
   VisibilityArguments visibility;
-  std::string error = "5%";
-  std::string time;  // empty: no deadline
+  std::string error;  // empty: 5 %, not measured
+  std::string time;   // empty: no deadline
   std::string progress = "auto";
-  LinkMaker links = LinkMaker::sampled;
+  std::vector<std::string> links;  // who makes them, or how many at most
   HierarchyKind hierarchy = HierarchyKind::size_grid;
   int threads = 0;
 };
 
+// Where to stop; the deadline is apart.
+struct SolveGoals {
+  std::optional<float> error;        // measured relative RMS error of irradiance
+  std::optional<std::size_t> links;  // no more than these
+};
+
 void add_solve_arguments(CLI::App& command, SolveArguments& arguments);
-Result<SolveOptions> resolve(const SolveArguments& arguments);
+struct SolvePlan {
+  SolveOptions options;
+  SolveGoals goals;
+};
+Result<SolvePlan> resolve(const SolveArguments& arguments);
 Progress::Listener progress_listener(const SolveArguments& arguments);
 
-// Cancels the progress when --time has passed since construction.
+// Cancels the progress when --time has passed since a start.
 class Deadline {
  public:
-  Deadline(Progress& progress, const SolveArguments& arguments);
+  using Clock = std::chrono::steady_clock;
+  Deadline(Progress& progress, const SolveArguments& arguments, Clock::time_point start);
   ~Deadline();
   Deadline(const Deadline&) = delete;
   Deadline& operator=(const Deadline&) = delete;
+
+  bool set() const { return timer_ != nullptr; }
+  double seconds_left() const;  // when set
 
  private:
   struct Timer;

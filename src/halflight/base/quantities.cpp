@@ -47,4 +47,9 @@ Result<double> parse_percent(std::string_view text) {
   return parse(text, units, "percentage", "write it like 5%");
 }
 
+Result<double> parse_count(std::string_view text) {
+  constexpr std::array<Unit, 3> units{{{"", 1.0}, {"k", 1e3}, {"M", 1e6}}};
+  return parse(text, units, "count", "write it like 250000, 250k or 2M");
+}
+
 }  // namespace halflight

@@ -10,5 +10,6 @@ namespace halflight {
 Result<double> parse_length(std::string_view text);    // "0.05", "5cm", "2in": metres
 Result<double> parse_duration(std::string_view text);  // "10", "10s", "2m", "500ms": seconds
 Result<double> parse_percent(std::string_view text);   // "5%", "5": 0.05
+Result<double> parse_count(std::string_view text);     // "250000", "250k", "2M"
 
 }  // namespace halflight

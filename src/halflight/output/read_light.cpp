@@ -10,6 +10,7 @@ namespace {
 
 // A surface this much brighter than the scene's mean radiosity is read like an emitter.
 constexpr float kBright = 5.f;
+constexpr float kErrorOfPlainReading = 0.05f;
 
 // Whole surfaces (none that needed cells) that reflect much more light than others.
 std::vector<EmittingSide> find_bright_reflectors(const SolverState& state,
@@ -55,6 +56,13 @@ ReadOptions with_feature_size(ReadOptions options, float feature_size) {
 }
 
 }  // namespace
+
+ReadOptions sensor_reading(const SolverState& state) {
+  ReadOptions options;
+  const float more = std::clamp(kErrorOfPlainReading / state.options.error, 0.25f, 8.f);
+  options.gather_rays = static_cast<int>(more * static_cast<float>(options.gather_rays));
+  return options;
+}
 
 SolutionReader::SolutionReader(const SolverState& state, const ReadOptions& options)
     : state_(&state),

@@ -25,6 +25,9 @@ inline constexpr ReadOptions kPixelReading{
     .gather_rays = 32,
     .direct = {.shadow_rays = 8, .penumbra_rays = 24, .largest_group_share = 0.03f}};
 
+// For sensors: as many rays as the error that is aimed at asks for.
+ReadOptions sensor_reading(const SolverState& state);
+
 class SolutionReader {
  public:
   // Refers to the state, which must outlive the reader.

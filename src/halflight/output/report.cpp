@@ -121,6 +121,10 @@ std::string Report::json(const SolverState& state) const {
                       {"absorbed", rgb(energy.absorbed)},
                       {"escaped", rgb(energy.escaped)}};
   report["mean_irradiance"] = mean_irradiance(state);
+  if (error_) {
+    report["estimated_error"] = error_->relative_rms;
+    report["estimated_error_noise"] = error_->least;
+  }
   report["history"] = history(state);
   report["warnings"] = state.world->scene.warnings;
   if (has_mesh_)

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "halflight/output/estimated_error.h"
 #include "halflight/output/lit_mesh.h"
 #include "halflight/solve/solver.h"
 
@@ -19,6 +21,7 @@ class Report {
   // Records the seconds since `start` under a name; a name given twice adds up.
   void end_phase(const std::string& name, Clock::time_point start);
   void set_lit_mesh(const LitMesh& mesh, float exposure);
+  void set_estimated_error(const EstimatedError& error) { error_ = error; }
 
   std::string json(const SolverState& state) const;
 
@@ -28,6 +31,7 @@ class Report {
   bool has_mesh_ = false;
   std::size_t mesh_vertices_ = 0, mesh_triangles_ = 0, mesh_readings_ = 0;
   float exposure_ = 0.f;
+  std::optional<EstimatedError> error_;
 };
 
 }  // namespace halflight

@@ -31,9 +31,9 @@ bool is_buried(const SolverState& state, const Vec3& x, const Vec3& n, std::uint
   return hit && !state.tree.leaf_hit(*hit).valid();
 }
 
-// Of the part that is not covered.
-GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uint64_t stream,
-                              const EmitterTree* emitters) {
+// Of the part that is not covered. Light from emitters is left to refined links.
+GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uint64_t stream) {
+  const EmitterTree* emitters = state.sampled[cell] != 0 ? state.emitters.get() : nullptr;
   const Vec3 n = state.tree.normal(cell);
   const float s = state.options.feature_size;
   DirectLightOptions options = kCellDirectLight;
@@ -115,6 +115,9 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
     for (const ElementId child : state.tree[parent].children()) {
       evaluate_material(state, child);
       state.given_light[child] = state.given_light[parent];
+      // Cells that are split for the next round of sampled links do with their parent's meanwhile.
+      state.given_light_known[child] =
+          state.sampled[parent] != 0 ? state.given_light_known[parent] : std::uint8_t{0};
       if (!state.outer_light.empty()) state.outer_light[child] = state.outer_light[parent];
       state.irradiance[child] = state.irradiance[parent];
       state.tolerance[child] = state.tolerance[parent];
@@ -147,9 +150,8 @@ void give_light_to_clusters(SolverState& state, const EmitterTree& emitters,
   });
 }
 
-void update_given_light(SolverState& state, float irradiance_threshold,
-                        const EmitterTree* emitters) {
-  if (!has_outer_light(*state.world) && !emitters) return;
+void update_given_light(SolverState& state, float irradiance_threshold) {
+  if (!has_outer_light(*state.world) && !state.emitters) return;
   std::vector<ElementId> open;
   for (std::size_t i = 0; i < state.tree.size(); ++i) {
     const ElementId e(i);
@@ -163,12 +165,12 @@ void update_given_light(SolverState& state, float irradiance_threshold,
       const ElementId e = open[i];
       // As with links: what is kept had no say in whether to split (transport/refine.cpp).
       if (state.tree.cell_size(e) > 2.f * smallest_cell(state)) {
-        const GivenLight pilot = sample_given_light(state, e, kPilot, emitters);
+        const GivenLight pilot = sample_given_light(state, e, kPilot);
         const float error = pilot.deviation * std::sqrt(state.tree[e].area / scene_area);
         uneven[i] = error > state.tolerance[e] * irradiance_threshold;
         if (uneven[i]) return;
       }
-      const GivenLight light = sample_given_light(state, e, kKept, emitters);
+      const GivenLight light = sample_given_light(state, e, kKept);
       state.given_light[e] = light.mean;
       if (!state.outer_light.empty()) state.outer_light[e] = light.outer;
       state.given_light_known[e] = 1;

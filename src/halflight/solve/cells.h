@@ -25,9 +25,7 @@ void give_light_to_clusters(SolverState& state, const EmitterTree& emitters,
                             const SampledLinkOptions& options);
 
 // Evaluates the light that links do not carry on all leaf cells where it is not known yet, and
-// splits cells on which it varies by more than the threshold (as in RefineOptions). `emitters` adds
-// emitting surfaces to punctual lights and sky; null leaves them to the links.
-void update_given_light(SolverState& state, float irradiance_threshold,
-                        const EmitterTree* emitters);
+// splits cells on which it varies by more than the threshold (as in RefineOptions).
+void update_given_light(SolverState& state, float irradiance_threshold);
 
 }  // namespace halflight

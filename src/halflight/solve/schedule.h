@@ -27,6 +27,7 @@ struct Schedule {
   std::vector<ElementPair> pairs{};    // to be refined before anything else, last first
   std::vector<ElementId> receivers{};  // that still need sampled links, last first
   std::size_t receiver_total = 0;      // of which they are left
+  std::uint8_t round = 0;              // of sampled links, from 1
 };
 
 // What one iteration did (the report's history).

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
+#include "halflight/base/hash.h"
 #include "halflight/base/parallel.h"
 #include "halflight/hierarchy/live_sides.h"
 #include "halflight/solve/cells.h"
@@ -29,6 +31,9 @@ constexpr float kClusterSizes = 1.f;  // SampledLinkOptions::largest_cluster in 
 constexpr float kLeastTolerance = 0.15f;
 constexpr float kSweepTolerance = 2e-4f;
 constexpr int kMostSweeps = 60;
+// Errors below this take more rays for each receiver, in proportion.
+constexpr float kErrorOfPlainSampling = 0.05f;
+constexpr float kMostOversampling = 8.f;
 constexpr int kSweepsOfShortIteration = 2;
 constexpr int kFirstGuessOfSweeps = 10;
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
@@ -95,7 +100,7 @@ int levels_of_links(const SolveOptions& options) {
 // Threshold and tolerances of the level that comes next, by the light that is there now.
 void begin_level(SolverState& state) {
   const bool first = state.history.empty();
-  if (first) update_given_light(state, kInfinity, nullptr);
+  if (first) update_given_light(state, kInfinity);
   const float mean = first ? first_guess_of_irradiance(state) : mean_irradiance(state);
   if (!first) update_tolerance(state, mean);
   const int levels_left = state.options.levels - 1 - state.schedule.level;
@@ -154,19 +159,32 @@ std::vector<ElementPair> pairs_of(const std::vector<ReceiverLink>& links) {
   return pairs;
 }
 
-// Of the links that do not hold at this level, which stay; the worst last.
+// Of the links that do not hold at this level; they stay.
 std::vector<ElementPair> failing_pairs(SolverState& state) {
-  std::vector<ReceiverLink> links = state.links.release();
-  const std::vector<float> errors = relative_errors(state, links);
-  std::vector<std::uint32_t> order;
-  for (std::size_t i = 0; i < links.size(); ++i)
-    if (errors[i] > 1.f) order.push_back(static_cast<std::uint32_t>(i));
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return errors[a] < errors[b]; });
-  std::vector<ElementPair> pairs;
-  for (const std::uint32_t i : order) pairs.push_back({links[i].receiver, links[i].link.source});
+  const std::vector<ReceiverLink> links = state.links.release();
+  std::vector<ElementPair> pairs = pairs_of(find_worst_links(state, links, kUnlimited).links);
   state.links.append(links);
   return pairs;
+}
+
+// Any part of the list is then like the whole, and its time tells that of the others; neighbours,
+// whose rays meet the same places, stay together.
+template <class T>
+void shuffle_blocks(std::vector<T>& list) {
+  constexpr std::size_t kBlock = 64;
+  std::vector<std::size_t> blocks((list.size() + kBlock - 1) / kBlock);
+  std::iota(blocks.begin(), blocks.end(), std::size_t{0});
+  std::sort(blocks.begin(), blocks.end(),
+            [](std::size_t a, std::size_t b) { return mix_bits(a) < mix_bits(b); });
+  std::vector<T> shuffled;
+  shuffled.reserve(list.size());
+  for (const std::size_t b : blocks) {
+    const auto at = [&](std::size_t i) {
+      return list.begin() + static_cast<std::ptrdiff_t>(std::min(list.size(), i));
+    };
+    shuffled.insert(shuffled.end(), at(b * kBlock), at((b + 1) * kBlock));
+  }
+  list = std::move(shuffled);
 }
 
 // Appends the links that come of the pairs, none when only the shape of elements is wanted.
@@ -188,7 +206,7 @@ void refine_pairs(SolverState& state, std::vector<ElementPair> pairs, bool shape
       std::move(pairs), options,
       [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress, links, counts);
   record.pairs = counts.pairs;
-  update_given_light(state, record.irradiance_threshold, nullptr);
+  update_given_light(state, record.irradiance_threshold);
 }
 
 // Refines the k worst links; ends the level when there are no more.
@@ -215,7 +233,7 @@ void refine_links(SolverState& state, std::size_t k, const Progress& progress,
   todo.stage = state.options.links == LinkMaker::sampled ? Stage::shape : Stage::converge;
 }
 
-// Elements for the last level, by k of the links that would not hold there, the worst first.
+// Elements for the last level, by k of the links that would not hold there.
 void shape_elements(SolverState& state, std::size_t k, const Progress& progress,
                     IterationRecord& record) {
   Schedule& todo = state.schedule;
@@ -232,6 +250,10 @@ SampledLinkOptions sampled_link_options(const SolverState& state) {
   SampledLinkOptions options;
   options.feature_size = state.options.feature_size;
   options.largest_cluster = kClusterSizes * state.options.feature_size;
+  const float more =
+      std::clamp(kErrorOfPlainSampling / state.options.error, 1.f, kMostOversampling);
+  options.rays_per_cell = static_cast<int>(more * static_cast<float>(options.rays_per_cell));
+  options.rays_per_cluster = static_cast<int>(more * static_cast<float>(options.rays_per_cluster));
   return options;
 }
 
@@ -242,7 +264,8 @@ void hand_over(SolverState& state, const std::vector<ElementId>& receivers) {
   while (!open.empty()) {
     const ElementId e = open.back();
     open.pop_back();
-    state.sampled[e] = 1;
+    state.sampled[e] = state.schedule.round;
+    state.sampled_links.clear(e);
     state.given_light_known[e] = 0;
     for (const ElementId child : state.tree[e].children()) open.push_back(child);
   }
@@ -280,11 +303,21 @@ void sample_receivers(SolverState& state, std::size_t k, IterationRecord& record
   const SampledLinkOptions options = sampled_link_options(state);
   hand_over(state, receivers);
   give_light_to_clusters(state, *state.emitters, receivers, options);
-  update_given_light(state, record.irradiance_threshold, state.emitters.get());
+  update_given_light(state, record.irradiance_threshold);
   state.sampled_links.append(
       sample_links(state.tree, state.world->rays, state.opacity,
                    choose_receivers(state.tree, receivers, options.largest_cluster), options));
   record.refined += n;
+}
+
+// Cells that were split since an earlier round have kept their links for those of their parts that
+// had none of their own yet.
+void forget_earlier_rounds(SolverState& state) {
+  for (std::size_t i = 0; i < state.tree.size(); ++i)
+    if (state.sampled[ElementId(i)] != state.schedule.round)
+      state.sampled_links.clear(ElementId(i));
+  const std::vector<ReceiverLink> links = state.sampled_links.release();
+  state.sampled_links.append(links);
 }
 
 // Without limit in portions all the same, to be able to stop.
@@ -298,7 +331,7 @@ void sample_links(SolverState& state, std::size_t k, const Progress& progress,
     progress.report("solve", share_done(state));
   }
   if (!todo.receivers.empty()) return;
-  state.links = {};
+  if (todo.round > 1) forget_earlier_rounds(state);
   todo.stage = Stage::converge;
 }
 
@@ -328,19 +361,21 @@ void begin_stage(SolverState& state, bool in_short_iterations) {
   Schedule& todo = state.schedule;
   if (todo.irradiance_threshold == 0.f) {
     begin_level(state);
-    if (todo.stage == Stage::shape && state.links.size() > 0) todo.pairs = failing_pairs(state);
-    update_given_light(state, todo.irradiance_threshold, nullptr);
+    if (todo.stage == Stage::shape && state.links.size() > 0) {
+      todo.pairs = failing_pairs(state);
+      if (in_short_iterations) shuffle_blocks(todo.pairs);
+    }
+    update_given_light(state, todo.irradiance_threshold);
   }
   if (todo.stage == Stage::sample && todo.receivers.empty()) {
-    state.emitters = std::make_shared<EmitterTree>(*state.visibility, find_emitters(*state.world));
+    if (!state.emitters)
+      state.emitters =
+          std::make_shared<EmitterTree>(*state.visibility, find_emitters(*state.world));
+    ++todo.round;
     todo.receivers = choose_receivers(state.tree, {state.tree.root()},
                                       sampled_link_options(state).largest_cluster);
     todo.receiver_total = todo.receivers.size();
-    // Large cells show the most; rays of neighbours meet the same places.
-    if (in_short_iterations)
-      std::stable_sort(todo.receivers.begin(), todo.receivers.end(), [&](ElementId a, ElementId b) {
-        return std::ilogb(state.tree[a].area) < std::ilogb(state.tree[b].area);
-      });
+    if (in_short_iterations) shuffle_blocks(todo.receivers);
   }
 }
 
@@ -400,7 +435,9 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
   // Of the units that were chosen, by what earlier iterations took.
   record.predicted_seconds = state.costs.predict(stage, record.refined, size, sweeps);
   const std::size_t new_size = state.tree.size() + state.link_total();
-  state.costs.learn(stage, record.refined, record.refine_seconds, size, new_size);
+  // The first iteration starts from one link, like no other.
+  if (!state.history.empty())
+    state.costs.learn(stage, record.refined, record.refine_seconds, size, new_size);
 
   // While only elements are shaped, nothing new arrives anywhere.
   Sweeps swept;
@@ -416,6 +453,13 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
   record.rays = state.world->rays.ray_total() - rays_before;
   state.history.push_back(record);
   progress.report("solve", share_done(state));
+}
+
+void aim_finer(SolverState& state, float factor) {
+  state.options.error /= factor;
+  state.schedule.irradiance_threshold = 0.f;
+  state.schedule.level = levels_of_links(state.options);
+  state.schedule.stage = state.options.links == LinkMaker::sampled ? Stage::shape : Stage::refine;
 }
 
 double least_iteration_seconds(const SolverState& state) {

@@ -49,8 +49,8 @@ struct SolverState {
   IdVector<ElementId, float> opacity{};    // of cells: share of the light that they stop
   IdVector<ElementId, Rgb> reflectance{};  // of cells, of all light that falls on them
   IdVector<ElementId, Rgb> exitance{};     // pi L of cells, times their opacity
-  // 1: the light comes by sampled links, of the element or of the cluster around it, which carry
-  // reflected light only; 0: by refined links, which carry all.
+  // 0: the light comes by refined links, which carry all of it. Else by sampled links of that
+  // round, of the element or of one around it; they carry reflected light only.
   IdVector<ElementId, std::uint8_t> sampled{};
   // Irradiance of leaf cells that links do not carry: by punctual lights and the sky, and where
   // links are sampled by emitting surfaces too.
@@ -62,10 +62,10 @@ struct SolverState {
   IdVector<ElementId, float> tolerance{};
   IdVector<ElementId, Rgb> radiosity{};  // B = rho E + pi L, mean over the element's area
   LinkTable links{};                     // refined
-  LinkTable sampled_links{};             // grow row by row and take the place of the others
+  LinkTable sampled_links{};             // take the place of the others receiver by receiver
   // By what the light of links is multiplied on leaf cells; see sweep.cpp. Empty: to be found anew.
   IdVector<ElementId, float> row_limits{};
-  std::shared_ptr<const EmitterTree> emitters{};  // made when links are sampled
+  std::shared_ptr<const EmitterTree> emitters{};  // made when the first links are sampled
 
   Schedule schedule{};
   CostModel costs{};
@@ -88,6 +88,9 @@ struct IterationBudget {
 // convergence when there is no limit. Which links are chosen depends on the number of links alone,
 // so a limit in seconds gives results that depend on the machine's speed.
 void advance(SolverState& state, const Progress& progress, const IterationBudget& budget = {});
+
+// Sets out for an error smaller by a factor above 1, once done: finer elements, more rays.
+void aim_finer(SolverState& state, float factor);
 
 // What the shortest iteration would take at least, as learnt so far.
 double least_iteration_seconds(const SolverState& state);

@@ -49,6 +49,10 @@ class LinkTable {
   }
   // All links of a receiver must be in the same call, in any order among those of others.
   void append(const std::vector<ReceiverLink>& links);
+  // Forgets a receiver's links; their place is only given back by `release`.
+  void clear(ElementId receiver) {
+    if (rows_.contains(receiver)) rows_[receiver].count = 0;
+  }
   // Back to a plain list, in receiver order; leaves the table empty.
   std::vector<ReceiverLink> release();
 

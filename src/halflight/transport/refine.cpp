@@ -55,13 +55,13 @@ class Oracle {
     const bool can_refine = finer != Verdict::Kind::accept;
     const float threshold = tolerance_[r] * options_.irradiance_threshold;
 
-    const float strongest = scale * bounds.largest_weight;
-    if (strongest <= kNegligible * threshold) return accept(r, s, 1, bounds);
+    if (scale * bounds.largest_weight <= kNegligible * threshold) return accept(r, s, 1, bounds);
     const bool clusters = tree[r].is_cluster() || tree[s].is_cluster();
     if (bounds.touching && clusters && can_refine) return {finer, {}};
-    if (can_refine && strongest * bounds.kernel_variation > kHopeless * threshold &&
-        bounds.kernel_variation >= 0.5f && clusters)
-      return {finer, {}};
+    const float hopeless = clusters && bounds.kernel_variation >= 0.5f
+                               ? bounds.largest_weight * bounds.kernel_variation / kHopeless
+                               : 0.f;
+    if (can_refine && scale * hopeless > threshold) return {finer, {}};
     if (!can_refine) {
       Verdict verdict = accept(r, s, kFinalSamples, bounds);
       if (!accept_all_) verdict.link.error = 0.f;
@@ -77,7 +77,10 @@ class Oracle {
                         kUnseenVariation * bounds.kernel_variation * pilot.weight;
     if (scale * error > threshold) return {finer, {}};
     Verdict verdict = accept(r, s, kKeptSamples, bounds);
-    verdict.link.error = error;
+    // What a lower threshold would look at again: kernels that vary, and large cells that few
+    // samples were enough for.
+    const bool dim = scale * pilot.unoccluded <= threshold;
+    verdict.link.error = std::max({error, hopeless, is_blind(r) && dim ? pilot.unoccluded : 0.f});
     return verdict;
   }
 
@@ -96,7 +99,7 @@ class Oracle {
     verdict.kind = Verdict::Kind::accept;
     verdict.link.source = s;
     verdict.link.weight = std::min(t.weight, bounds.largest_weight);
-    verdict.link.error = bounds.largest_weight;
+    verdict.link.error = bounds.largest_weight / kNegligible;
     verdict.link.direction = t.direction;
     return verdict;
   }

@@ -1,0 +1,71 @@
+#include "solve_run.h"
+
+#include <algorithm>
+
+namespace halflight::app {
+namespace {
+
+// With a deadline an iteration takes at most this share of the time that is left: the costs of
+// those to come are learnt from those that are done.
+constexpr double kShareOfTimeLeft = 0.25;
+// With a budget of links one iteration refines at most this share of those that are left, as
+// several come of each.
+constexpr std::size_t kShareOfLinksLeft = 8, kShareOfSampledLinksLeft = 2;
+constexpr int kMostRounds = 4;      // of measuring the error and aiming at a smaller one
+constexpr float kLeastGain = 0.9f;  // of the error by a round that was worth its time
+constexpr float kSmallestStep = 1.5f, kLargestStep = 4.f;  // of the error that is aimed at
+
+// Runs the schedule to its end; false when a budget ended before.
+bool run_schedule(SolverState& state, const SolveGoals& goals, const Deadline& deadline,
+                  const Progress& progress,
+                  const std::function<void(const SolverState&)>& after_iteration) {
+  while (!state.done()) {
+    if (progress.cancelled() && !state.history.empty()) return false;
+    IterationBudget budget;
+    if (deadline.set()) {
+      const double left = deadline.seconds_left();
+      const double least = least_iteration_seconds(state);
+      if (!state.history.empty() && least > left) return false;
+      budget.seconds = std::min(left, std::max(kShareOfTimeLeft * left, 2.0 * least));
+    }
+    if (goals.links) {
+      if (state.link_total() >= *goals.links) return false;
+      const std::size_t share =
+          state.schedule.stage == Stage::sample ? kShareOfSampledLinksLeft : kShareOfLinksLeft;
+      budget.links = std::max<std::size_t>(1, (*goals.links - state.link_total()) / share);
+    }
+    advance(state, progress, budget);
+    if (after_iteration) after_iteration(state);
+  }
+  return true;
+}
+
+}  // namespace
+
+SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Deadline& deadline,
+                         const Progress& progress, bool wants_error,
+                         const std::function<void(const SolverState&)>& after_iteration) {
+  SolveOutcome outcome;
+  outcome.goal_met = run_schedule(state, goals, deadline, progress, after_iteration);
+  if (!goals.error && !(wants_error && outcome.goal_met)) return outcome;
+  if (progress.cancelled()) return outcome;
+  const ErrorProbes probes(state);
+  outcome.error = probes.measure(state);
+  if (!goals.error) return outcome;
+  for (int round = 1; outcome.goal_met && outcome.error->relative_rms > *goals.error; ++round) {
+    if (round == kMostRounds) {
+      outcome.goal_met = false;
+      break;
+    }
+    const float before = outcome.error->relative_rms;
+    aim_finer(state, std::clamp(before / *goals.error, kSmallestStep, kLargestStep));
+    outcome.goal_met = run_schedule(state, goals, deadline, progress, after_iteration);
+    if (progress.cancelled()) break;
+    outcome.error = probes.measure(state);
+    if (outcome.error->relative_rms > std::max(*goals.error, kLeastGain * before))
+      outcome.goal_met = false;
+  }
+  return outcome;
+}
+
+}  // namespace halflight::app

@@ -1,0 +1,118 @@
+#include "halflight/output/estimated_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "halflight/base/parallel.h"
+#include "halflight/rays/path_tracer.h"
+#include "halflight/rays/sampling.h"
+
+namespace halflight {
+namespace {
+
+constexpr std::size_t kProbes = 512;
+// Of each of the two estimates at a point: to begin with, and by how many times more where they
+// are noisier than wanted, relative to the light there or the mean.
+constexpr std::uint32_t kPaths = 32, kMorePaths = 4;
+constexpr int kRounds = 2;
+constexpr float kNoiseFloor = 0.35f;  // of the estimate, in units of the error that is aimed at
+
+// Points in gaps narrower than the feature size lie in shadows that nobody asked for.
+std::vector<ReadingPoint> scatter_in_the_open(const SolverState& state, std::size_t count) {
+  const RayScene& rays = state.world->rays;
+  std::vector<ReadingPoint> points = scatter_points(state, count);
+  std::erase_if(points, [&](const ReadingPoint& p) {
+    return rays
+        .closest_hit(rays.lift(p.position, p.normal), p.normal, state.options.feature_size, 0)
+        .has_value();
+  });
+  return points;
+}
+
+}  // namespace
+
+std::vector<ReadingPoint> scatter_points(const SolverState& state, std::size_t count) {
+  std::vector<ElementId> sides;
+  std::vector<double> cumulative;
+  double area = 0.0;
+  for (std::size_t i = 0; i < 2 * state.surfaces->surfaces.size(); ++i) {
+    const ElementId whole = state.tree.side_root(SideId(i));
+    if (!whole.valid()) continue;
+    sides.push_back(whole);
+    cumulative.push_back(area += static_cast<double>(state.tree[whole].area));
+  }
+  if (sides.empty()) return {};
+  std::vector<ReadingPoint> points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double wanted =
+        area * (static_cast<double>(i) + static_cast<double>(to_unit_float(hash(i, 1)))) /
+        static_cast<double>(count);
+    const auto found = std::upper_bound(cumulative.begin(), cumulative.end() - 1, wanted);
+    const ElementId cell = sides[static_cast<std::size_t>(found - cumulative.begin())];
+    const CellPoint at = state.tree.sample(cell, random_shift(hash(i, 2)));
+    points[i] = {at.position, state.tree.normal(cell), at.triangle};
+  }
+  return points;
+}
+
+ErrorProbes::ErrorProbes(const SolverState& state)
+    : points_(scatter_in_the_open(state, kProbes)), truths_(points_.size()) {
+  const PathTracer tracer(*state.world);
+  const auto trace = [&](std::size_t i, std::uint32_t paths) {
+    const ReadingPoint& p = points_[i];
+    Truth& t = truths_[i];
+    const auto seed = [&](std::uint64_t half) { return hash(i, t.paths, half); };
+    const auto a = tracer.estimate_irradiance(p.position, p.normal, paths, seed(61));
+    const auto b = tracer.estimate_irradiance(p.position, p.normal, paths, seed(67));
+    const float share = static_cast<float>(paths) / static_cast<float>(t.paths + paths);
+    t.first = glm::mix(t.first, a.mean, share);
+    t.second = glm::mix(t.second, b.mean, share);
+    const float noise = average(0.5f * (a.standard_error + b.standard_error));
+    t.noise = std::hypot((1.f - share) * t.noise, share * noise);
+    t.paths += paths;
+  };
+  parallel_for(points_.size(), 4, [&](std::size_t i) { trace(i, kPaths); });
+  // Noise of n points leaves the fourth root of its variance over n in the estimate.
+  const float wanted =
+      kNoiseFloor * state.options.error * std::pow(static_cast<float>(points_.size()), 0.25f);
+  std::uint32_t paths = kPaths;
+  for (int round = 0; round < kRounds; ++round) {
+    paths *= kMorePaths;
+    const float mean = mean_irradiance();
+    parallel_for(points_.size(), 1, [&](std::size_t i) {
+      const float scale = std::max(average(truths_[i].mean()), mean);
+      if (truths_[i].noise > wanted * scale) trace(i, paths);
+    });
+  }
+}
+
+float ErrorProbes::mean_irradiance() const {
+  double sum = 0.0;
+  for (const Truth& t : truths_) sum += static_cast<double>(average(t.mean()));
+  return static_cast<float>(sum / static_cast<double>(std::max<std::size_t>(1, truths_.size())));
+}
+
+EstimatedError ErrorProbes::measure(const SolverState& state) const {
+  EstimatedError error;
+  error.mean = mean_irradiance();
+  if (points_.empty() || !(error.mean > 0.f)) return error;
+  const std::vector<Reading> readings = SolutionReader(state, sensor_reading(state))(points_);
+  double squares = 0.0, squared_squares = 0.0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Truth& t = truths_[i];
+    const Rgb e = readings[i].irradiance();
+    const float scale = std::max(average(t.mean()), error.mean);
+    const auto square =
+        static_cast<double>(average((e - t.first) * (e - t.second)) / (scale * scale));
+    squares += square;
+    squared_squares += square * square;
+  }
+  const auto n = static_cast<double>(points_.size());
+  squares /= n;
+  const double deviation = std::sqrt(std::max(0.0, squared_squares / n - squares * squares) / n);
+  error.relative_rms = static_cast<float>(std::sqrt(std::max(0.0, squares)));
+  error.least = static_cast<float>(std::sqrt(deviation));
+  return error;
+}
+
+}  // namespace halflight
