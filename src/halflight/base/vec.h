@@ -52,6 +52,11 @@ struct Bounds3f {
   Vec3 extent() const { return empty() ? Vec3(0.f) : upper - lower; }
   float diagonal() const { return glm::length(extent()); }
   float longest_side() const { return max_component(extent()); }
+  int longest_axis() const {
+    const Vec3 e = extent();
+    if (e.x >= e.y && e.x >= e.z) return 0;
+    return e.y >= e.z ? 1 : 2;
+  }
   float middle_side() const {
     const Vec3 e = extent();
     return std::max(std::min(e.x, e.y), std::min(std::max(e.x, e.y), e.z));

@@ -31,11 +31,6 @@ struct KdCell {
   std::size_t largest_side() const { return std::max(upper - lower, last - upper); }
 };
 
-int longest_axis(const Vec3& extent) {
-  if (extent.x >= extent.y && extent.x >= extent.z) return 0;
-  return extent.y >= extent.z ? 1 : 2;
-}
-
 void cut_at(KdCell& cell, std::span<KdPart> parts, int axis, float plane) {
   cell.axis = axis;
   cell.plane = plane;
@@ -60,7 +55,7 @@ void cut_at_median(KdCell& cell, std::span<KdPart> parts) {
   const std::span<KdPart> own = parts.subspan(cell.first, cell.count());
   Bounds3f centers;
   for (const KdPart& p : own) centers.extend(p.box.center());
-  const int axis = longest_axis(centers.extent());
+  const int axis = centers.longest_axis();
   std::vector<float> along(own.size());
   for (std::size_t i = 0; i < along.size(); ++i) along[i] = own[i].box.center()[axis];
   const auto middle = along.begin() + static_cast<std::ptrdiff_t>(along.size() / 2);
@@ -72,7 +67,7 @@ void cut_at_median(KdCell& cell, std::span<KdPart> parts) {
 // False: the cell stays whole.
 bool cut(KdCell& cell, std::span<KdPart> parts, std::size_t most_in_cell) {
   if (cell.count() <= most_in_cell) return false;
-  const int axis = longest_axis(cell.box.extent());
+  const int axis = cell.box.longest_axis();
   cut_at(cell, parts, axis, cell.box.center()[axis]);
   if (one_sided(cell)) cut_at_median(cell, parts);
   return !one_sided(cell);

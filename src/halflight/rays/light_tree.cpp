@@ -53,12 +53,6 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
   return out;
 }
 
-int longest_axis(const Bounds3f& b) {
-  const Vec3 e = b.extent();
-  if (e.x >= e.y && e.x >= e.z) return 0;
-  return e.y >= e.z ? 1 : 2;
-}
-
 }  // namespace
 
 // theta: angle between the light's axis and the direction to p; theta_o: its cone; theta_u: angle
@@ -116,7 +110,7 @@ LightTree::LightTree(std::span<const LightBounds> lights) : trails_(lights.size(
     Bounds3f centers;
     for (std::uint32_t i = range.first; i < range.last; ++i)
       centers.extend(lights[order[i]].bounds.center());
-    const int axis = longest_axis(centers);
+    const int axis = centers.longest_axis();
     const std::uint32_t middle = (range.first + range.last) / 2;
     std::nth_element(order.begin() + range.first, order.begin() + middle,
                      order.begin() + range.last, [&](std::uint32_t a, std::uint32_t b) {

@@ -79,8 +79,7 @@ std::size_t split_boxes(std::span<BoxedPart> parts, bool heuristic) {
     const auto size = static_cast<std::size_t>(middle - parts.begin());
     if (size > 0 && size < parts.size()) return size;
   }
-  const Vec3 e = centers.extent();
-  const int axis = e.x >= e.y && e.x >= e.z ? 0 : (e.y >= e.z ? 1 : 2);
+  const int axis = centers.longest_axis();
   const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(parts.size() / 2);
   std::nth_element(parts.begin(), middle, parts.end(), [&](const auto& a, const auto& b) {
     return a.box.center()[axis] < b.box.center()[axis];
