@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::size_t kRowsPerReport = 16;
 constexpr int kMostPanes = 32;
-constexpr float kOpaque = 1e-3f;  // what is seen through less is not seen
 
 // The lit triangles that show one side of the surfaces, ready to be found by rays.
 class LitSide {
@@ -85,7 +84,7 @@ Image solution_image(const SolverState& state, const SolutionReader& reader, con
     Rgb sum(0.f);
     float left = 1.f;  // share of what lies behind that is seen
     Vec3 origin = ray.origin;
-    for (int pane = 0; pane < kMostPanes && left > kOpaque; ++pane) {
+    for (int pane = 0; pane < kMostPanes && left > kBlockedBelow; ++pane) {
       const auto hit = world.rays.first_surface(origin, ray.direction, kInfinity);
       if (!hit) return sum + left * world.scene.sky;
       const float opacity =

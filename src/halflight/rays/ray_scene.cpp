@@ -17,7 +17,6 @@ namespace {
 // Answers differ in the last bit between instruction sets with and without fused multiply-add
 // (RenderKit/embree#51); AVX2 is on every processor since 2013 that this is meant for.
 constexpr const char* kInstructionSet = "avx2";
-constexpr float kOpaque = 1e-3f;  // a transmittance below this counts as blocked
 
 // What the filters need beyond Embree's own context.
 struct Context : RTCIntersectContext {
@@ -35,7 +34,7 @@ void attenuate(const RTCFilterFunctionNArguments* args) {
   const TriangleId t = context->triangles[RTCHitN_primID(args->hit, 1, 0)];
   const Vec2 barycentric(RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0));
   context->transmittance *= 1.f - opacity_at(*context->scene, *context->geometry, t, barycentric);
-  if (context->transmittance >= kOpaque) args->valid[0] = 0;
+  if (context->transmittance >= kBlockedBelow) args->valid[0] = 0;
 }
 
 // Path rays: pass with probability 1 - opacity, without a seed only where the opacity is 0.

@@ -11,6 +11,9 @@
 
 namespace halflight {
 
+// A transmittance below this counts as blocked, and what is seen through less as not seen.
+inline constexpr float kBlockedBelow = 1e-3f;
+
 struct RayHit {
   TriangleId triangle;
   Vec2 barycentric{0.f};  // weights of the triangle's 2nd and 3rd corner

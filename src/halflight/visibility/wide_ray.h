@@ -6,13 +6,12 @@
 
 #include <immintrin.h>
 
+#include "halflight/rays/ray_scene.h"
 #include "halflight/visibility/criterion.h"
 #include "halflight/visibility/multires_nodes.h"
 
 namespace halflight {
 
-// A transmittance below this counts as blocked, as in RayScene.
-inline constexpr float kBlockedBelow = 1e-3f;
 // Entries: 7 * (depth of the tree) + 1, and the builder limits the depth to 140.
 inline constexpr std::size_t kTraversalStack = 1024;
 
