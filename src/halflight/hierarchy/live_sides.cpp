@@ -104,9 +104,8 @@ bool sees_nothing(const Geometry& g, const Surfaces& surfaces, const RayScene& r
   const Vec3 n = surfaces.normal(side);
   for (std::uint32_t i = 0; i < kRaysPerLargeSide; ++i) {
     const std::uint64_t seed = hash(side.value, i);
-    const auto corner = g.corners(surfaces.triangles[s.first_triangle + seed % s.triangle_count]);
-    const Vec2 b = uniform_triangle(random_shift(seed));
-    const Vec3 p = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
+    const TriangleId t = surfaces.triangles[s.first_triangle + seed % s.triangle_count];
+    const Vec3 p = g.point(t, uniform_triangle(random_shift(seed)));
     if (rays.closest_hit(rays.lift(p, n), direction_about(n, i, side.value), kInfinity, seed))
       return false;
   }
@@ -122,14 +121,12 @@ void follow_emission(const Scene& scene, const Geometry& g, const Surfaces& surf
     const TriangleId t(i);
     const Material& m = scene.materials[g.materials[t]];
     if (!m.emits()) return;
-    const auto corner = g.corners(t);
     for (const bool back : {false, true}) {
       if (back && !m.double_sided) continue;
       const Vec3 n = glm::normalize(g.scaled_normal(t)) * (back ? -1.f : 1.f);
       for (std::uint32_t k = 0; k < kRaysPerEmitter; ++k) {
         const std::uint64_t seed = hash(i, k, back);
-        const Vec2 b = uniform_triangle(random_shift(seed));
-        const Vec3 p = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
+        const Vec3 p = g.point(t, uniform_triangle(random_shift(seed)));
         const auto hit =
             rays.closest_hit(rays.lift(p, n), direction_about(n, k, hash(i)), kInfinity, seed);
         if (hit) visit(surfaces.side_hit(*hit));

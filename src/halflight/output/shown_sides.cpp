@@ -57,9 +57,8 @@ void add_samples(const Geometry& g, std::span<const TriangleId> piece, float fea
     const auto after = std::upper_bound(area_before.begin() + 1, area_before.end() - 1, share);
     const TriangleId t = piece[static_cast<std::size_t>(after - area_before.begin()) - 1];
     const Vec2 at = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(i)));
-    const auto [a, b, c] = g.corners(t);
     const Vec3 n = glm::normalize(g.scaled_normal(t));
-    const Vec3 p = a + at.x * (b - a) + at.y * (c - a);
+    const Vec3 p = g.point(t, at);
     out.push_back({p, n, t});
     out.push_back({p, -n, t});
   }

@@ -84,10 +84,9 @@ std::optional<LightSample> Emitters::sample_triangle(TriangleId triangle, const 
                                                      const Vec3& n, Vec2 u,
                                                      float probability) const {
   const Vec2 barycentric = uniform_triangle(u);
-  const auto [a, b, c] = geometry_->corners(triangle);
   const Vec3 normal = geometry_->scaled_normal(triangle);
   LightSample s;
-  s.point = a + barycentric.x * (b - a) + barycentric.y * (c - a);
+  s.point = geometry_->point(triangle, barycentric);
   const Vec3 offset = s.point - p;
   const float facing = -glm::dot(normal, offset);  // 2 A d cos(theta_e)
   const float receiving = glm::dot(n, offset);     // d cos(theta_r)

@@ -22,8 +22,7 @@ struct RayHit {
 };
 
 inline Vec3 hit_position(const Geometry& geometry, const RayHit& hit) {
-  const auto [a, b, c] = geometry.corners(hit.triangle);
-  return a + hit.barycentric.x * (b - a) + hit.barycentric.y * (c - a);
+  return geometry.point(hit.triangle, hit.barycentric);
 }
 
 // Unit, towards the side that the ray met.

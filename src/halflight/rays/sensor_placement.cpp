@@ -33,7 +33,7 @@ Candidate candidate(const Geometry& g, TriangleId t, const Vec3& p, const Vec3& 
   SensorPlacement& at = found.placement;
   at.triangle = t;
   at.barycentric = closest_barycentric(p, a, b, c);
-  at.position = a + at.barycentric.x * (b - a) + at.barycentric.y * (c - a);
+  at.position = g.point(t, at.barycentric);
   const float cosine = glm::dot(normal, n);
   at.front = cosine >= 0.f;
   at.normal = at.front ? normal : -normal;

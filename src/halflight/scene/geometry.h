@@ -69,6 +69,11 @@ struct Geometry {
     const auto [a, b, c] = corners(t);
     return glm::cross(b - a, c - a);
   }
+  // At barycentric weights of the 2nd and 3rd corner.
+  Vec3 point(TriangleId t, Vec2 weights) const {
+    const auto [a, b, c] = corners(t);
+    return a + weights.x * (b - a) + weights.y * (c - a);
+  }
   // Weights of the 2nd and 3rd corner at a point in the triangle's plane.
   Vec2 barycentric(TriangleId t, const Vec3& p) const {
     const auto [a, b, c] = corners(t);

@@ -211,8 +211,7 @@ std::vector<VisibilityRay> rays_between_surfaces(const World& world) {
     const auto found = std::upper_bound(cumulative.begin(), cumulative.end() - 1, wanted);
     const TriangleId t(static_cast<std::size_t>(found - cumulative.begin()));
     const Vec2 b = uniform_triangle({to_unit_float(hash(i, 2)), to_unit_float(hash(i, 3))});
-    const auto [p, q, r] = g.corners(t);
-    return Point{p + b.x * (q - p) + b.y * (r - p), glm::normalize(g.scaled_normal(t))};
+    return Point{g.point(t, b), glm::normalize(g.scaled_normal(t))};
   };
   std::vector<VisibilityRay> rays;
   if (g.triangles.empty()) return rays;
