@@ -22,9 +22,8 @@ void add_visibility_arguments(CLI::App& command, VisibilityArguments& arguments,
       .add_option("--feature-size", arguments.feature_size,
                   "smallest shadow kept exact, e.g. 5cm; 0: all [scene diagonal / 200]")
       ->type_name("LEN");
-  const std::map<std::string, VisibilityMode> modes{{"exact", VisibilityMode::exact},
-                                                    {"average", VisibilityMode::average},
-                                                    {"multires", VisibilityMode::multires}};
+  std::map<std::string, VisibilityMode> modes;
+  for (const NamedVisibilityMode& m : kVisibilityModes) modes.emplace(m.name, m.mode);
   command
       .add_option("--visibility", arguments.mode,
                   "exact: every surface; average: clusters as media; multires: as media only where "

@@ -26,18 +26,6 @@ json input(const SolverState& state) {
           {"bounds", {rgb(g.bounds.lower), rgb(g.bounds.upper)}}};
 }
 
-const char* name_of(VisibilityMode mode) {
-  switch (mode) {
-    case VisibilityMode::average:
-      return "average";
-    case VisibilityMode::multires:
-      return "multires";
-    case VisibilityMode::exact:
-      break;
-  }
-  return "exact";
-}
-
 json settings(const SolverState& state) {
   return {{"feature_size", state.options.feature_size},
           {"error", state.options.error},

@@ -4,6 +4,12 @@
 
 namespace halflight {
 
+std::string_view name_of(VisibilityMode mode) {
+  for (const NamedVisibilityMode& m : kVisibilityModes)
+    if (m.mode == mode) return m.name;
+  return {};
+}
+
 Visibility::Visibility(const World& world, const Surfaces& surfaces, const ClusterTree& clusters,
                        VisibilityMode mode, const MultiresOptions& options)
     : world_(&world), mode_(mode) {

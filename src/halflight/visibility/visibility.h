@@ -1,9 +1,11 @@
 // How much of the light from one point arrives at another: one question, three answers.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "halflight/base/counter.h"
 #include "halflight/rays/world.h"
@@ -16,6 +18,16 @@ enum class VisibilityMode : std::uint8_t {
   average,  // clusters as media down to the last (Sillion 1994; paper section 5)
   multires  // clusters as media where that throws no visible shadow, surfaces exactly (section 3)
 };
+
+struct NamedVisibilityMode {
+  VisibilityMode mode;
+  std::string_view name;  // on the command line and in reports
+};
+inline constexpr std::array kVisibilityModes{
+    NamedVisibilityMode{VisibilityMode::exact, "exact"},
+    NamedVisibilityMode{VisibilityMode::average, "average"},
+    NamedVisibilityMode{VisibilityMode::multires, "multires"}};
+std::string_view name_of(VisibilityMode mode);
 
 struct RayEnds {
   Vec3 receiver{0.f};
