@@ -56,6 +56,15 @@ Result<Image> solved_image(const RenderArguments& arguments,
                         arguments.samples_per_pixel, progress);
 }
 
+Result<Image> path_traced(const RenderArguments& arguments, const World& world, const View& view,
+                          const Progress& progress) {
+  const auto shadows = path_shadows(arguments.solve.visibility, world);
+  if (!shadows) return tl::unexpected(shadows.error());
+  const PathTracer tracer(world, *shadows ? &(*shadows)->test() : nullptr);
+  return path_traced_image(tracer, CameraRays(view.camera, view.width, view.height), view.width,
+                           view.height, arguments.path_trace, arguments.seed, progress);
+}
+
 Result<void> render(const RenderArguments& arguments) {
   if (auto ok = check(arguments); !ok) return ok;
   Result<Scene> scene = load(arguments.scene);
@@ -67,18 +76,14 @@ Result<void> render(const RenderArguments& arguments) {
                                         [&] { return automatic_view(tracer, arguments.seed); });
   if (!view) return tl::unexpected(view.error());
 
-  const auto shadows = path_shadows(arguments.solve.visibility, *world);
-  if (!shadows) return tl::unexpected(shadows.error());
-  const PathTracer shadowed(*world, *shadows ? &(*shadows)->test() : nullptr);
-  const CameraRays camera(view->camera, view->width, view->height);
   const Progress progress(progress_listener(arguments.solve));
-  const Result<Image> picture =
-      arguments.path_trace > 0 ? path_traced_image(shadowed, camera, view->width, view->height,
-                                                   arguments.path_trace, arguments.seed, progress)
-                               : solved_image(arguments, world, *view, progress);
+  const Result<Image> picture = arguments.path_trace > 0
+                                    ? path_traced(arguments, *world, *view, progress)
+                                    : solved_image(arguments, world, *view, progress);
   if (!picture) return tl::unexpected(picture.error());
   if (auto written = write_picture(arguments.view, *picture); !written) return written;
   if (arguments.visibility_output.empty()) return {};
+  const CameraRays camera(view->camera, view->width, view->height);
   const Image visibility = visibility_image(tracer, camera, view->width, view->height,
                                             arguments.visibility_samples, arguments.seed, progress);
   return write_image(arguments.visibility_output, visibility);
