@@ -5,7 +5,7 @@
 #include "halflight/rays/sampling.h"
 #include "halflight/scene/procedural/plants.h"
 #include "halflight/visibility/multires_build.h"
-#include "halflight/visibility/multires_shadows.h"
+#include "halflight/visibility/multires_paths.h"
 
 namespace halflight {
 namespace {
@@ -28,10 +28,11 @@ class PathTracedPlants : public ::testing::Test {
     }
     return sum / kPoints;
   }
-  float with(VisibilityMode mode, float feature_size) const {
+  float with(VisibilityMode mode, float feature_size,
+             BounceRays bounces = BounceRays::exact) const {
     const Visibility visibility(*world, surfaces, one_cluster(surfaces), mode);
-    const MultiresShadows shadows(visibility, feature_size);
-    return floor_irradiance(PathTracer(*world, &shadows));
+    const MultiresPaths rays(visibility, feature_size, bounces);
+    return floor_irradiance(PathTracer(*world, &rays));
   }
 };
 

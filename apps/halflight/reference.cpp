@@ -1,4 +1,5 @@
 // halflight reference SCENE --points FILE --spp N: path-traced irradiance at sensors.
+#include <chrono>
 #include <memory>
 
 #include <fmt/format.h>
@@ -29,9 +30,16 @@ float one_number(const Rgb& standard_error) {
   return std::sqrt(glm::dot(standard_error, standard_error) / 3.f);
 }
 
-// Against exact shadows on the same paths: the noise of both is much the same and cancels.
-void report_bias(const std::vector<IrradianceEstimate>& estimates,
-                 const std::vector<IrradianceEstimate>& exact) {
+struct TimedEstimates {
+  std::vector<IrradianceEstimate> at_sensors;
+  double seconds = 0.0;
+};
+
+// Against exact rays on the same samples: where bounces are exact the noise is much the same and
+// cancels.
+void report_bias(const TimedEstimates& tried, const TimedEstimates& reference) {
+  const auto& estimates = tried.at_sensors;
+  const auto& exact = reference.at_sensors;
   double sum = 0.0, exact_sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
     const auto mean = static_cast<double>(average(estimates[i].mean));
@@ -42,10 +50,11 @@ void report_bias(const std::vector<IrradianceEstimate>& estimates,
   }
   if (!(exact_sum > 0.0)) return;
   const auto count = static_cast<double>(exact.size());
-  std::fputs(fmt::format("halflight: against exact shadows: mean irradiance {:+.2f} %, RMS "
-                         "difference {:.2f} % of the mean\n",
+  std::fputs(fmt::format("halflight: against exact rays: mean irradiance {:+.2f} %, RMS "
+                         "difference {:.2f} % of the mean, {:.2f} times the time ({:.2f} s)\n",
                          100.0 * (sum / exact_sum - 1.0),
-                         100.0 * std::sqrt(squares / count) / (exact_sum / count))
+                         100.0 * std::sqrt(squares / count) / (exact_sum / count),
+                         tried.seconds / reference.seconds, tried.seconds)
                  .c_str(),
              stderr);
 }
@@ -57,21 +66,25 @@ Result<void> reference(const ReferenceArguments& arguments) {
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
   const World world(std::move(*scene));
-  const auto shadows = path_shadows(arguments.visibility, world);
-  if (!shadows) return tl::unexpected(shadows.error());
-  const PathTracer tracer(world, *shadows ? &(*shadows)->test() : nullptr);
+  const auto visibility = path_visibility(arguments.visibility, world);
+  if (!visibility) return tl::unexpected(visibility.error());
 
   std::vector<WorldSensor> in_world;
   for (const Sensor& sensor : *sensors) in_world.push_back(to_world(world.scene.to_world, sensor));
   const Progress progress(terminal_progress());
-  const auto estimates =
-      reference_irradiance(tracer, in_world, arguments.samples, arguments.seed, progress);
-  if (*shadows)
-    report_bias(estimates, reference_irradiance(PathTracer(world), in_world, arguments.samples,
-                                                arguments.seed, progress));
+  const auto trace = [&](const PathRays* rays) {
+    const auto start = std::chrono::steady_clock::now();
+    TimedEstimates estimates{reference_irradiance(PathTracer(world, rays), in_world,
+                                                  arguments.samples, arguments.seed, progress)};
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    estimates.seconds = time.count();
+    return estimates;
+  };
+  const TimedEstimates estimates = trace(*visibility ? &(*visibility)->rays() : nullptr);
+  if (*visibility) report_bias(estimates, trace(nullptr));
   std::vector<Rgb> means;
   std::vector<float> errors;
-  for (const IrradianceEstimate& e : estimates) {
+  for (const IrradianceEstimate& e : estimates.at_sensors) {
     means.push_back(e.mean);
     errors.push_back(one_number(e.standard_error));
   }
@@ -99,6 +112,7 @@ void add_reference(CLI::App& cli, int& status) {
       ->check(CLI::Range(2u, 1u << 30))
       ->required();
   add_visibility_arguments(command, arguments->visibility, "exact");
+  add_bounce_argument(command, arguments->visibility);
   command.add_option("--seed", arguments->seed, "picks another set of samples")
       ->capture_default_str();
   command.add_option("--threads", arguments->threads, "0: all cores")

@@ -58,9 +58,9 @@ Result<Image> solved_image(const RenderArguments& arguments,
 
 Result<Image> path_traced(const RenderArguments& arguments, const World& world, const View& view,
                           const Progress& progress) {
-  const auto shadows = path_shadows(arguments.solve.visibility, world);
-  if (!shadows) return tl::unexpected(shadows.error());
-  const PathTracer tracer(world, *shadows ? &(*shadows)->test() : nullptr);
+  const auto visibility = path_visibility(arguments.solve.visibility, world);
+  if (!visibility) return tl::unexpected(visibility.error());
+  const PathTracer tracer(world, *visibility ? &(*visibility)->rays() : nullptr);
   return path_traced_image(tracer, CameraRays(view.camera, view.width, view.height), view.width,
                            view.height, arguments.path_trace, arguments.seed, progress);
 }
@@ -101,6 +101,7 @@ void add_render(CLI::App& cli, int& status) {
       .add_option("--path-trace", arguments->path_trace, "trace this many paths per pixel instead")
       ->type_name("SPP")
       ->check(CLI::Range(1u, 1u << 24));
+  add_bounce_argument(command, arguments->solve.visibility);
   command
       .add_option("--samples", arguments->samples_per_pixel,
                   "camera rays per pixel of solved light")

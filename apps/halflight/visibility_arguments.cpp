@@ -33,6 +33,18 @@ void add_visibility_arguments(CLI::App& command, VisibilityArguments& arguments,
       ->default_str(otherwise);
 }
 
+void add_bounce_argument(CLI::App& command, VisibilityArguments& arguments) {
+  const std::map<std::string, BounceRays> rays{{"exact", BounceRays::exact},
+                                               {"clusters", BounceRays::clusters}};
+  command
+      .add_option("--bounces", arguments.bounces,
+                  "with --visibility: exact, or paths that go on from clusters up to the feature "
+                  "size as well")
+      ->transform(CLI::CheckedTransformer(rays).description(""))
+      ->type_name("exact|clusters")
+      ->default_str("exact");
+}
+
 Result<float> resolve_feature_size(const VisibilityArguments& arguments) {
   if (arguments.feature_size.empty()) return -1.f;
   const Result<double> length = parse_length(arguments.feature_size);
@@ -42,17 +54,18 @@ Result<float> resolve_feature_size(const VisibilityArguments& arguments) {
   return static_cast<float>(*length);
 }
 
-PathShadows::PathShadows(const World& world, VisibilityMode mode, float feature_size)
-    : visibility_(make_visibility(world, mode)), shadows_(visibility_, feature_size) {}
+PathVisibility::PathVisibility(const World& world, VisibilityMode mode, float feature_size,
+                               BounceRays bounces)
+    : visibility_(make_visibility(world, mode)), rays_(visibility_, feature_size, bounces) {}
 
-Result<std::unique_ptr<const PathShadows>> path_shadows(const VisibilityArguments& arguments,
-                                                        const World& world) {
+Result<std::unique_ptr<const PathVisibility>> path_visibility(const VisibilityArguments& arguments,
+                                                              const World& world) {
   Result<float> size = resolve_feature_size(arguments);
   if (!size) return tl::unexpected(size.error());
   if (*size < 0.f) size = world.geometry.bounds.diagonal() / 200.f;
   const VisibilityMode mode = arguments.mode.value_or(VisibilityMode::exact);
   if (mode == VisibilityMode::exact || !(*size > 0.f)) return nullptr;
-  return std::make_unique<const PathShadows>(world, mode, *size);
+  return std::make_unique<const PathVisibility>(world, mode, *size, arguments.bounces);
 }
 
 }  // namespace halflight::app

@@ -9,34 +9,38 @@
 
 #include "halflight/base/result.h"
 #include "halflight/rays/world.h"
-#include "halflight/visibility/multires_shadows.h"
+#include "halflight/visibility/multires_paths.h"
 
 namespace halflight::app {
 
 struct VisibilityArguments {
   std::optional<VisibilityMode> mode;
-  std::string feature_size;  // empty: scene diagonal / 200
+  std::string feature_size;                // empty: scene diagonal / 200
+  BounceRays bounces = BounceRays::exact;  // of path tracers
 };
 
 // `otherwise` is the mode that the help names for when none is given.
 void add_visibility_arguments(CLI::App& command, VisibilityArguments& arguments,
                               const std::string& otherwise);
 
+// For those who trace paths.
+void add_bounce_argument(CLI::App& command, VisibilityArguments& arguments);
+
 // Metres; negative when none was given.
 Result<float> resolve_feature_size(const VisibilityArguments& arguments);
 
-// What a path tracer asks instead of exact shadow rays.
-class PathShadows {
+// What a path tracer asks instead of exact rays.
+class PathVisibility {
  public:
-  PathShadows(const World& world, VisibilityMode mode, float feature_size);
-  const ShadowTest& test() const { return shadows_; }
+  PathVisibility(const World& world, VisibilityMode mode, float feature_size, BounceRays bounces);
+  const PathRays& rays() const { return rays_; }
 
  private:
   Visibility visibility_;
-  MultiresShadows shadows_;
+  MultiresPaths rays_;
 };
-// None when exact shadows are asked for, as they are without --visibility.
-Result<std::unique_ptr<const PathShadows>> path_shadows(const VisibilityArguments& arguments,
-                                                        const World& world);
+// None when exact rays are asked for, as they are without --visibility.
+Result<std::unique_ptr<const PathVisibility>> path_visibility(const VisibilityArguments& arguments,
+                                                              const World& world);
 
 }  // namespace halflight::app

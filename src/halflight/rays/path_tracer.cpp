@@ -34,8 +34,8 @@ Rgb PathTracer::directional_light(const Vec3& p, const Vec3& n) const {
   for (const PunctualLight& light : emitters_.directional()) {
     const float cosine = -glm::dot(n, light.direction);
     if (!(cosine > 0.f)) continue;
-    const float visible = shadows_ ? shadows_->from_direction(p, -light.direction)
-                                   : world_->rays.transmittance_to_sky(p, -light.direction);
+    const float visible = rays_ ? rays_->from_direction(p, -light.direction)
+                                : world_->rays.transmittance_to_sky(p, -light.direction);
     total += light.intensity * (cosine * visible);
   }
   return total;
@@ -46,7 +46,7 @@ Rgb PathTracer::sampled_light(const Vec3& p, const Vec3& n, PathSampler& sampler
   const auto s = emitters_.sample(p, n, u_light, sampler.next_pair());
   if (!s) return Rgb(0.f);
   const Vec3 end = shadow_ray_end(world_->rays, *s);
-  if (shadows_) return s->irradiance * shadows_->from_emitter(p, end, s->triangle);
+  if (rays_) return s->irradiance * rays_->from_emitter(p, end, s->triangle);
   float weight = 1.f;
   if (s->density > 0.f) {
     const float cosine = glm::dot(n, glm::normalize(s->point - p));
@@ -65,12 +65,14 @@ Rgb PathTracer::irradiance_by_one_path(Vec3 p, Vec3 n, PathSampler& sampler) con
 
     const Vec3 local = cosine_hemisphere(sampler.next_pair());
     const Vec3 direction = Frame::from_normal(n).to_world(local);
-    const auto hit = world_->rays.closest_hit(origin, direction, kInfinity, sampler.next_seed());
+    const std::uint64_t seed = sampler.next_seed();
+    const auto hit = rays_ ? rays_->next_surface(origin, direction, seed)
+                           : world_->rays.closest_hit(origin, direction, kInfinity, seed);
     if (!hit) return total + weight * kPi * world_->scene.sky;
 
     const SurfacePoint next = surface_point(world_->geometry, *hit);
     const Rgb emitted = emitters_.radiance(hit->triangle, hit->barycentric, hit->front);
-    if (max_component(emitted) > 0.f && !shadows_) {
+    if (max_component(emitted) > 0.f && !rays_) {
       const float by_light = emitters_.density(hit->triangle, origin, n, direction * hit->distance);
       total += weight * emitted * (kPi * power_heuristic(local.z / kPi, by_light));
     }

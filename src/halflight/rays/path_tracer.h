@@ -7,8 +7,8 @@
 
 #include "halflight/base/vec.h"
 #include "halflight/rays/emitters.h"
+#include "halflight/rays/path_rays.h"
 #include "halflight/rays/path_sampler.h"
-#include "halflight/rays/shadow_test.h"
 #include "halflight/rays/world.h"
 
 namespace halflight {
@@ -20,11 +20,11 @@ struct IrradianceEstimate {
 
 class PathTracer {
  public:
-  // Refers to the world, which must outlive it. Thread-safe. With a shadow test of somebody else's
-  // (which must outlive it too) all direct light goes through that test and nothing is left to
-  // chance hits of emitters: its bias shows in full.
-  explicit PathTracer(const World& world, const ShadowTest* shadows = nullptr)
-      : world_(&world), shadows_(shadows), emitters_(world.scene, world.geometry) {}
+  // Refers to the world, which must outlive it. Thread-safe. With rays of somebody else's
+  // (which must outlive it too) all direct light goes through their shadow rays and nothing is left
+  // to chance hits of emitters: their bias shows in full.
+  explicit PathTracer(const World& world, const PathRays* rays = nullptr)
+      : world_(&world), rays_(rays), emitters_(world.scene, world.geometry) {}
 
   // Irradiance on the side of a surface that the unit normal points to; the point lies on the
   // surface or in the air. The standard error comes from up to 16 independent batches of
@@ -50,7 +50,7 @@ class PathTracer {
   Rgb directional_light(const Vec3& p, const Vec3& n) const;
 
   const World* world_;
-  const ShadowTest* shadows_;  // null: exact
+  const PathRays* rays_;  // null: exact
   Emitters emitters_;
 };
 

@@ -22,7 +22,7 @@ constexpr float kDarkDepth = 6.9f;  // -ln(kBlockedBelow), a little less
 // returning false.
 template <class Visitor>
 void MultiresTree::walk(const VisibilityRay& ray, const StopRule& rule, bool average,
-                        Visitor& visit) const {
+                        Visitor& visit, std::uint32_t root) const {
   if (arrays_.nodes.empty()) return;
   const WideRay& wide = visit.ray;
   const __m256 at_receiver = _mm256_set1_ps(rule.at_receiver);
@@ -36,7 +36,7 @@ void MultiresTree::walk(const VisibilityRay& ray, const StopRule& rule, bool ave
 
   std::array<std::uint32_t, kTraversalStack> stack;
   std::size_t stacked = 0;
-  stack[stacked++] = 0;
+  stack[stacked++] = root;
   while (stacked > 0) {
     const std::uint32_t index = stack[--stacked];
     const MultiresNode& node = arrays_.nodes[index];
@@ -146,6 +146,7 @@ struct PathEnd {
       if (distance >= std::min(far[slot], nearest.distance)) return;
       nearest = {};
       nearest.cluster = arrays.contents[id].cluster;
+      nearest.slot = static_cast<std::uint32_t>(id);
       nearest.distance = distance;
     });
     return true;
@@ -294,6 +295,22 @@ std::optional<MediumHit> MultiresTree::closest_hit(const VisibilityRay& ray, con
         glm::dot(geometry_->scaled_normal(hit.surface.triangle), ray.direction) < 0.f;
   else if (hit.distance >= ray.reach)
     return std::nullopt;
+  return hit;
+}
+
+std::optional<RayHit> MultiresTree::nearest_below(std::uint32_t slot, const VisibilityRay& ray,
+                                                  std::uint64_t seed) const {
+  PathEnd end{arrays_, *scene_, *geometry_, WideRay(ray), seed, {}};
+  end.nearest.distance = ray.reach;
+  const MultiresNode& node = arrays_.nodes[slot / kWide];
+  const auto i = static_cast<std::uint32_t>(slot % kWide);
+  if (i < node.node_count)
+    walk(ray, StopRule::never(), false, end, node.first_node + i);
+  else
+    end.block(node.first_block + i - node.node_count);
+  RayHit& hit = end.nearest.surface;
+  if (!hit.triangle.valid()) return std::nullopt;
+  hit.front = glm::dot(geometry_->scaled_normal(hit.triangle), ray.direction) < 0.f;
   return hit;
 }
 

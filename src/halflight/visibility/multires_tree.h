@@ -49,6 +49,7 @@ struct TraversalCount {
 struct MediumHit {
   RayHit surface;             // triangle invalid: absorbed inside a cluster
   std::uint32_t cluster = 0;  // of the ClusterTree, when absorbed
+  std::uint32_t slot = 0;     // of the tree (8 * node + slot), when absorbed
   float distance = 0.f;       // in units of the direction
 
   bool in_cluster() const { return !surface.triangle.valid(); }
@@ -82,6 +83,11 @@ class MultiresTree {
   std::optional<MediumHit> closest_hit(const VisibilityRay& ray, const StopRule& rule,
                                        std::uint64_t seed) const;
 
+  // Nearest of the surfaces below a slot, as RayScene::closest_hit would find it without the
+  // others.
+  std::optional<RayHit> nearest_below(std::uint32_t slot, const VisibilityRay& ray,
+                                      std::uint64_t seed) const;
+
   // What a ray's walk consists of, for tests and pictures: the parts below which it did not look.
   struct CutPart {
     bool stopped = false;  // as a medium; else tested exactly
@@ -99,7 +105,8 @@ class MultiresTree {
   void take_pictures();
   std::vector<TriangleId> contents(std::size_t slot) const;
   template <class Visitor>
-  void walk(const VisibilityRay& ray, const StopRule& rule, bool average, Visitor& visit) const;
+  void walk(const VisibilityRay& ray, const StopRule& rule, bool average, Visitor& visit,
+            std::uint32_t root = 0) const;
 
   const Scene* scene_;
   const Geometry* geometry_;

@@ -55,7 +55,7 @@ std::optional<MediumHit> Visibility::closest_hit(const Vec3& receiver, const Vec
                               StopRule::widening(feature_size, spread), seed);
   const auto hit = world_->rays.closest_hit(receiver, direction, max_distance, seed);
   if (!hit) return std::nullopt;
-  return MediumHit{*hit, 0, hit->distance};
+  return MediumHit{.surface = *hit, .distance = hit->distance};
 }
 
 }  // namespace halflight
