@@ -16,6 +16,8 @@ std::span<const Experiment> all_experiments() {
                  run_figure8},
       Experiment{"figure9", "cost and error of multi-resolution visibility, by feature size",
                  run_figure9},
+      Experiment{"clutter", "a cluttered office solved whole: cost and error, by feature size",
+                 run_clutter},
       Experiment{"table1", "the feature-based error metric of the four groups", run_table1},
   };
   return kExperiments;
