@@ -96,8 +96,9 @@ ClutterStudy study_clutter(int count, int pixels, const Progress& progress) {
   for (std::size_t i = 0; i <= kClutterShares.size() && !progress.cancelled(); ++i) {
     const double share = i == 0 ? 0.0 : kClutterShares[i - 1];
     progress.report("clutter", static_cast<double>(i) / (1.0 + kClutterShares.size()));
-    study.solutions.push_back(solve_and_look(
-        world, options_of(static_cast<float>(share) * study.diagonal), study.views, Progress()));
+    study.solutions.push_back(solve_and_look(world,
+                                             options_of(static_cast<float>(share) * study.diagonal),
+                                             study.views, kMeshReading, Progress()));
     const StudySolution& s = study.solutions.back();
     std::vector<StudyError>& errors = study.errors.emplace_back();
     for (std::size_t v = 0; v < study.views.size(); ++v)

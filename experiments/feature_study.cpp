@@ -4,7 +4,6 @@
 #include <ctime>
 
 #include "halflight/features/compare.h"
-#include "halflight/output/read_light.h"
 
 namespace halflight::experiments {
 namespace {
@@ -16,7 +15,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 StudySolution solve_and_look(const std::shared_ptr<const World>& world, const SolveOptions& options,
-                             const std::vector<FlatView>& views, const Progress& progress) {
+                             const std::vector<FlatView>& views, const ReadOptions& reading,
+                             const Progress& progress) {
   StudySolution result;
   const std::uint64_t exact_before = world->rays.ray_total();
   const std::clock_t processor_start = std::clock();
@@ -32,7 +32,7 @@ StudySolution solve_and_look(const std::shared_ptr<const World>& world, const So
   result.feature_size = state.options.feature_size;
 
   start = std::chrono::steady_clock::now();
-  const SolutionReader reader(state, kMeshReading);
+  const SolutionReader reader(state, reading);
   for (const FlatView& view : views)
     result.pictures.push_back(irradiance_picture(
         view, [&](std::span<const ReadingPoint> points) { return reader(points, progress); }));

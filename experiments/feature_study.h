@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/flat_view.h"
-#include "halflight/solve/solver.h"
+#include "halflight/output/read_light.h"
 
 namespace halflight::experiments {
 
@@ -25,7 +25,8 @@ struct StudySolution {
   std::vector<Image> pictures;  // irradiance
 };
 StudySolution solve_and_look(const std::shared_ptr<const World>& world, const SolveOptions& options,
-                             const std::vector<FlatView>& views, const Progress& progress);
+                             const std::vector<FlatView>& views, const ReadOptions& reading,
+                             const Progress& progress);
 
 struct StudyError {
   double l2 = 0;          // as shares of the reference's mean irradiance

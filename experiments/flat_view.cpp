@@ -61,20 +61,14 @@ Image irradiance_picture(const FlatView& view, const LightReader& read) {
 }
 
 Image traced_picture(const FlatView& view, const PathTracer& tracer, std::uint32_t samples,
-                     double& noise) {
+                     std::uint64_t seed) {
   Image picture(view.width, view.height);
-  std::vector<double> squares(view.points.size(), 0.0);
   parallel_for(view.points.size(), 16, [&](std::size_t i) {
     const ReadingPoint& p = view.points[i];
-    if (!p.triangle.valid()) return;
-    const auto estimate = tracer.estimate_irradiance(p.position, p.normal, samples, hash(i));
-    picture.pixels[i] = estimate.mean;
-    squares[i] =
-        static_cast<double>(glm::dot(estimate.standard_error, estimate.standard_error)) / 3;
+    if (p.triangle.valid())
+      picture.pixels[i] =
+          tracer.estimate_irradiance(p.position, p.normal, samples, hash(seed, i)).mean;
   });
-  double sum = 0.0;
-  for (const double square : squares) sum += square;
-  noise = std::sqrt(sum / static_cast<double>(squares.size()));
   return picture;
 }
 

@@ -29,10 +29,9 @@ FlatView view_of_wall(const World& world, int pixels);
 
 // Irradiance at the points, read by `read`.
 Image irradiance_picture(const FlatView& view, const LightReader& read);
-// The same path-traced; the RMS of the standard errors of the pixels' channel means goes to
-// `noise`.
+// The same path-traced.
 Image traced_picture(const FlatView& view, const PathTracer& tracer, std::uint32_t samples,
-                     double& noise);
+                     std::uint64_t seed);
 
 // Pixels that do not see all of the light.
 BinaryImage shadow_in(const FlatView& view, const PathTracer& tracer, std::uint32_t samples);
