@@ -11,8 +11,9 @@
 namespace halflight::experiments {
 namespace {
 
-constexpr int kCount = 600;          // small things: 64,000 triangles
-constexpr int kPixels = 240;         // 3 cm each
+constexpr int kCount = 600;   // small things: 64,000 triangles
+constexpr int kPixels = 240;  // 3 cm each
+constexpr float kError = 0.05f;
 constexpr float kFromHeight = 0.8f;  // of the room's: below the lamps
 constexpr std::uint32_t kMaskSamples = 32;
 constexpr float kWhite = 1.6f;       // times the mean irradiance
@@ -20,8 +21,9 @@ constexpr float kErrorScale = 0.3f;  // of the mean irradiance: yellow
 
 // The paper's method as it stands: clusters are media wherever the criterion lets them, whether or
 // not that pays, and links come from the oracle alone.
-SolveOptions options_of(float feature_size) {
+SolveOptions options_of(float feature_size, float error) {
   SolveOptions options;
+  options.error = error;
   options.links = LinkMaker::refined;
   options.visibility = VisibilityMode::multires;
   options.visibility_pilot = false;
@@ -84,7 +86,7 @@ std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share
 
 }  // namespace
 
-ClutterStudy study_clutter(int count, int pixels, const Progress& progress) {
+ClutterStudy study_clutter(int count, int pixels, float error, const Progress& progress) {
   const auto world = make_world(office_scene({.count = count}));
   const PathTracer tracer(*world);
   ClutterStudy study;
@@ -96,9 +98,9 @@ ClutterStudy study_clutter(int count, int pixels, const Progress& progress) {
   for (std::size_t i = 0; i <= kClutterShares.size() && !progress.cancelled(); ++i) {
     const double share = i == 0 ? 0.0 : kClutterShares[i - 1];
     progress.report("clutter", static_cast<double>(i) / (1.0 + kClutterShares.size()));
-    study.solutions.push_back(solve_and_look(world,
-                                             options_of(static_cast<float>(share) * study.diagonal),
-                                             study.views, kMeshReading, Progress()));
+    study.solutions.push_back(
+        solve_and_look(world, options_of(static_cast<float>(share) * study.diagonal, error),
+                       study.views, kMeshReading, Progress()));
     const StudySolution& s = study.solutions.back();
     std::vector<StudyError>& errors = study.errors.emplace_back();
     for (std::size_t v = 0; v < study.views.size(); ++v)
@@ -109,7 +111,7 @@ ClutterStudy study_clutter(int count, int pixels, const Progress& progress) {
 }
 
 Result<Section> run_clutter(const Progress& progress) {
-  const ClutterStudy study = study_clutter(kCount, kPixels, progress);
+  const ClutterStudy study = study_clutter(kCount, kPixels, kError, progress);
   if (progress.cancelled()) return system_error("interrupted", "clutter");
   Section section{"clutter", "A cluttered office: cost and error by feature size", {}, {}};
   Table costs{"Cost of solving, and of reading the pictures",

@@ -19,7 +19,8 @@ struct ClutterStudy {
   std::vector<StudySolution> solutions;
   std::vector<std::vector<StudyError>> errors;  // of those, for each view
 };
-// An office of `count` small things; views of `pixels` along their longer side.
-ClutterStudy study_clutter(int count, int pixels, const Progress& progress);
+// An office of `count` small things; views of `pixels` along their longer side; solved to this
+// relative error.
+ClutterStudy study_clutter(int count, int pixels, float error, const Progress& progress);
 
 }  // namespace halflight::experiments

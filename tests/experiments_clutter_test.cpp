@@ -7,7 +7,7 @@ namespace halflight::experiments {
 namespace {
 
 TEST(Clutter, CostsFallAndErrorsAreBelowTheFeatureSize) {
-  const ClutterStudy study = study_clutter(0, 64, Progress());
+  const ClutterStudy study = study_clutter(0, 64, 0.15f, Progress());
   ASSERT_EQ(study.solutions.size(), kClutterShares.size() + 1);
   for (std::size_t i = 1; i < study.solutions.size(); ++i) {
     const StudyCost &now = study.solutions[i].cost, &before = study.solutions[i - 1].cost;
@@ -21,11 +21,8 @@ TEST(Clutter, CostsFallAndErrorsAreBelowTheFeatureSize) {
     }
   }
   EXPECT_LT(2 * study.solutions.back().cost.links, study.solutions.front().cost.links);
-  // Few shadows of the wall are wider than a tenth of the room: there most of the error averages
-  // out.
-  const StudyError& wall = study.errors.back().back();
-  EXPECT_LT(wall.fbem, 0.9 * wall.l2);
-  EXPECT_LT(wall.mask_share, 0.5);
+  // Shadows narrower than a tenth of the room: their errors average out.
+  for (const StudyError& e : study.errors.back()) EXPECT_LT(e.fbem, 0.99 * e.l2);
 }
 
 }  // namespace

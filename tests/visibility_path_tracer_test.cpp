@@ -3,6 +3,7 @@
 
 #include "halflight/rays/path_tracer.h"
 #include "halflight/rays/sampling.h"
+#include "halflight/scene/procedural/loose_triangles.h"
 #include "halflight/scene/procedural/plants.h"
 #include "halflight/visibility/multires_build.h"
 #include "halflight/visibility/multires_paths.h"
@@ -53,7 +54,9 @@ TEST_F(PathTracedPlants, BouncesOffClustersAddLittleBias) {
 }
 
 // The sampler's points against all that parallel rays through the cluster's box meet first.
-TEST_F(PathTracedPlants, PointsOfClustersAreThoseSeenByParallelRays) {
+TEST(ClusterSampler, PointsAreThoseSeenByParallelRays) {
+  const auto world = make_world(loose_triangles_scene({4096, 0.1f, 3}));
+  const Surfaces surfaces = build_surfaces(world->geometry);
   const MultiresTree tree(world->scene, world->geometry, surfaces, one_cluster(surfaces));
   const ClusterSampler sampler(*world, tree);
   const Geometry& g = world->geometry;
@@ -63,7 +66,7 @@ TEST_F(PathTracedPlants, PointsOfClustersAreThoseSeenByParallelRays) {
     const auto& below = tree.arrays().contents[slot];
     if (below.last_block - below.first_block < 3) continue;
     const Bounds3f box = tree.arrays().box_of(slot);
-    if (box.longest_side() > 0.5f) continue;
+    if (box.longest_side() > 0.25f * g.bounds.longest_side()) continue;
     ++tried;
     const Vec3 d = uniform_sphere({to_unit_float(hash(slot, 1)), to_unit_float(hash(slot, 2))});
     const Frame frame = Frame::from_normal(d);

@@ -20,7 +20,8 @@ class ClusterSampler {
   // A point of the surfaces below a slot (MediumHit::slot), uniform over the area that parallel
   // rays along the unit direction meet first, as if nothing else were in the scene. A surface of
   // opacity a is met with probability a. None when nothing was met in many tries, as where all is
-  // seen edge on. `distance` of the answer means nothing.
+  // seen edge on. Of surfaces that touch, such as books of a stack, either may be taken for the
+  // first. `distance` of the answer means nothing.
   std::optional<RayHit> visible_point(std::uint32_t slot, const Vec3& direction,
                                       std::uint64_t seed) const;
 
