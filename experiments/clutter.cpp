@@ -11,7 +11,7 @@
 namespace halflight::experiments {
 namespace {
 
-constexpr int kCount = 600;   // small things: 64,000 triangles
+constexpr int kCount = 600;   // small things: 61,000 triangles
 constexpr int kPixels = 240;  // 3 cm each
 constexpr float kError = 0.05f;
 constexpr float kFromHeight = 0.8f;  // of the room's: below the lamps
