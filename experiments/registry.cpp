@@ -18,6 +18,8 @@ std::span<const Experiment> all_experiments() {
                  run_figure9},
       Experiment{"clutter", "a cluttered office solved whole: cost and error, by feature size",
                  run_clutter},
+      Experiment{"multigrid", "iterations of a wanted length, predicted and real",
+                 run_multigrid_section},
       Experiment{"table1", "the feature-based error metric of the four groups", run_table1},
   };
   return kExperiments;

@@ -32,7 +32,7 @@ float relative_rms(const std::vector<float>& a, const std::vector<float>& b) {
   return static_cast<float>(std::sqrt(squares / static_cast<double>(a.size()))) / testing::mean(b);
 }
 
-TEST(ErrorHistogram, ThresholdLeavesAtMostSoManyAbove) {
+TEST(ErrorHistogram, ThresholdLeavesAboutSoManyAbove) {
   ErrorHistogram histogram;
   std::vector<float> errors;
   for (int i = 0; i < 1000; ++i) {
@@ -44,7 +44,8 @@ TEST(ErrorHistogram, ThresholdLeavesAtMostSoManyAbove) {
     const float threshold = histogram.threshold_for(k);
     const auto above =
         std::count_if(errors.begin(), errors.end(), [&](float e) { return e > threshold; });
-    EXPECT_LE(static_cast<std::size_t>(above), k) << k;
+    EXPECT_GE(static_cast<std::size_t>(above), std::min<std::size_t>(k, 999) / 2) << k;
+    EXPECT_LE(static_cast<std::size_t>(above), k + 60) << k;  // a bin more at most
     EXPECT_LE(threshold, last);
     last = threshold;
   }

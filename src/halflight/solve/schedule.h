@@ -50,8 +50,9 @@ struct IterationRecord {
 class ErrorHistogram {
  public:
   void add(float relative_error) { ++counts_[bin_of(relative_error)]; }
-  // The smallest edge of a bin such that at most k errors lie above it, if only to the highest bin
-  // that holds any; at least 1.
+  // The smallest edge of a bin such that at most k errors lie above it; where that would leave more
+  // than half of k unused, the edge below, and only some of the errors above it can be dealt with.
+  // At least 1.
   float threshold_for(std::size_t k) const;
 
  private:
