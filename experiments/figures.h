@@ -12,6 +12,7 @@ Result<Section> run_figure4(const Progress& progress);
 Result<Section> run_figure7(const Progress& progress);
 Result<Section> run_figure8(const Progress& progress);
 Result<Section> run_figure9(const Progress& progress);
+Result<Section> run_figure10(const Progress& progress);
 Result<Section> run_clutter(const Progress& progress);
 Result<Section> run_multigrid_section(const Progress& progress);
 Result<Section> run_table1(const Progress& progress);

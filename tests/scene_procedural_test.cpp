@@ -5,6 +5,7 @@
 
 #include "halflight/rays/ray_scene.h"
 #include "halflight/scene/geometry.h"
+#include "halflight/scene/procedural/books.h"
 #include "halflight/scene/procedural/cube_groups.h"
 #include "halflight/scene/procedural/doorway.h"
 #include "halflight/scene/procedural/furnace.h"
@@ -95,6 +96,36 @@ TEST(CubeGroups, CubesAreApartAndInTheSlab) {
       EXPECT_GE(cubes[i].lower.z, 0.2999f);
       EXPECT_LE(cubes[i].upper.z, 0.8001f);
       for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(cubes[i].overlaps(cubes[j]));
+    }
+  }
+}
+
+TEST(Books, StandApartBetweenTheBoards) {
+  for (int seed = 1; seed < 6; ++seed) {
+    BooksParameters p;
+    p.boards = 4;
+    p.seed = seed;
+    const Scene scene = books_scene(p);
+    const Geometry g = flatten(scene);
+    std::map<NodeId, Bounds3f> books;
+    Bounds3f shelf;
+    for (const PrimitiveInstance& instance : g.primitive_instances) {
+      const std::string& name = scene.nodes[instance.node].name;
+      Bounds3f box;
+      for (const VertexId v : instance.vertices) box.extend(g.positions[v]);
+      if (name.starts_with("book ")) books[instance.node].extend(box);
+      if (name == "shelf") shelf.extend(box);
+    }
+    EXPECT_GT(books.size(), 4u * 8u);
+    for (const auto& [node, box] : books) {
+      EXPECT_GT(box.lower.x, shelf.lower.x + 0.02f) << scene.nodes[node].name;
+      EXPECT_LT(box.upper.x, shelf.upper.x - 0.02f) << scene.nodes[node].name;
+      EXPECT_GT(box.lower.z, shelf.lower.z + 0.01f) << scene.nodes[node].name;
+      EXPECT_LT(box.upper.z, shelf.upper.z) << scene.nodes[node].name;
+      for (const auto& [other, other_box] : books) {
+        const bool apart = node == other || !box.overlaps(other_box);
+        EXPECT_TRUE(apart) << scene.nodes[node].name << ", " << scene.nodes[other].name;
+      }
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "halflight/scene/procedural/books.h"
 #include "halflight/scene/procedural/cornell_box.h"
 #include "halflight/scene/procedural/doorway.h"
 #include "halflight/scene/procedural/office.h"
@@ -83,6 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
         ClosedRoom{"DoorwayRefined", [] { return doorway_scene(); }, 0.3f, LinkMaker::refined,
                    0.02f},
         ClosedRoom{"DoorwaySampled", [] { return doorway_scene(); }, 0.3f, LinkMaker::sampled},
+        ClosedRoom{"BooksSampled", [] { return books_scene(); }, 0.4f, LinkMaker::sampled},
         ClosedRoom{"OfficeSampled", small_office, 0.4f, LinkMaker::sampled, 0.02f}),
     [](const auto& test) { return std::string(test.param.name); });
 

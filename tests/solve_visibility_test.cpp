@@ -95,8 +95,8 @@ TEST(ClusterLight, IsThatOfItsCellsOnTheMean) {
   for (const ElementId r : choose_receivers(state.tree, {state.tree.root()}, 0.3f)) {
     if (!state.tree[r].is_cluster()) continue;
     ++clusters;
-    const DirectLight light =
-        sample_direct_light(state.tree, *state.visibility, emitters, r, options);
+    const DirectionalIrradiance light = directional_irradiance(
+        sample_direct_light(state.tree, *state.visibility, emitters, r, options).of_emitters);
     std::vector<ElementId> open{r};
     while (!open.empty()) {
       const ElementId e = open.back();
@@ -105,7 +105,7 @@ TEST(ClusterLight, IsThatOfItsCellsOnTheMean) {
       if (state.tree[e].is_cluster()) continue;
       const Vec3 n = state.tree.normal(e);
       const auto area = static_cast<double>(state.tree[e].area);
-      of_clusters += area * static_cast<double>(average(light.of_emitters.irradiance(n)));
+      of_clusters += area * static_cast<double>(average(light.irradiance(n)));
       const Vec3 x = state.tree.sample(e, r2_sequence(e.value)).position;
       of_cells += area * static_cast<double>(
                              average(emitters.irradiance(x, n, {}, random_shift(hash(e.value)))));

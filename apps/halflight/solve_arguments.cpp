@@ -39,6 +39,13 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
       ->transform(CLI::CheckedTransformer(hierarchies).description(""))
       ->type_name("size-grid|kd-tree|goldsmith-salmon|agglomerative")
       ->default_str("size-grid");
+  command
+      .add_option("--intra-cluster", arguments.intra_cluster,
+                  "on: light on a cluster goes to what is seen of it; off: to all that faces it")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"on", true}, {"off", false}})
+                      .description(""))
+      ->type_name("on|off")
+      ->default_str(arguments.intra_cluster ? "on" : "off");
   command.add_option("--progress", arguments.progress, "how to tell of it on standard error")
       ->check(CLI::IsMember({"auto", "json", "none"}).description(""))
       ->type_name("auto|json|none")
@@ -56,6 +63,7 @@ Result<SolvePlan> resolve(const SolveArguments& arguments) {
   if (!feature_size) return tl::unexpected(feature_size.error());
   plan.options.feature_size = *feature_size;
   plan.options.hierarchy = arguments.hierarchy;
+  plan.options.intra_cluster = arguments.intra_cluster;
   if (!arguments.error.empty()) {
     const Result<double> error = parse_percent(arguments.error);
     if (!error) return tl::unexpected(error.error());

@@ -23,6 +23,7 @@ struct SolveArguments {
   std::string progress = "auto";
   std::vector<std::string> links;  // who makes them, or how many at most
   HierarchyKind hierarchy = HierarchyKind::size_grid;
+  bool intra_cluster = SolveOptions{}.intra_cluster;
   int threads = 0;
 };
 

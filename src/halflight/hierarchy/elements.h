@@ -71,6 +71,12 @@ class ElementTree {
   // is live.
   ElementId cluster_element(std::uint32_t cluster) const { return cluster_elements_[cluster]; }
 
+  // The element or one above it is `ancestor`.
+  bool contains(ElementId ancestor, ElementId element) const {
+    while (element.value > ancestor.value) element = elements_[element].parent;
+    return element == ancestor;  // parents have smaller ids
+  }
+
   // Halves a leaf cell across its longer side. Parts that hold nothing of the surface are left out,
   // so a cell may get a single child.
   void split(ElementId cell);

@@ -32,6 +32,7 @@ json settings(const SolverState& state) {
           {"links", state.options.links == LinkMaker::refined ? "refined" : "sampled"},
           {"visibility", name_of(state.visibility->mode())},
           {"hierarchy", name_of(state.options.hierarchy)},
+          {"intra_cluster", state.options.intra_cluster},
           {"levels", state.options.levels},
           {"sky", rgb(state.world->scene.sky)},
           {"threads", thread_count()},

@@ -128,24 +128,56 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   });
 }
 
+namespace {
+
+// All leaf cells of a side get the same.
+void give_light_to_side(SolverState& state, ElementId side, const Rgb& of_emitters,
+                        const Rgb& outer) {
+  std::vector<ElementId> open{side};
+  while (!open.empty()) {
+    const ElementId e = open.back();
+    open.pop_back();
+    for (const ElementId child : state.tree[e].children()) open.push_back(child);
+    if (!state.tree[e].is_leaf()) continue;
+    state.given_light[e] = of_emitters + outer;
+    if (!state.outer_light.empty()) state.outer_light[e] = outer;
+    state.given_light_known[e] = 1;
+  }
+}
+
+}  // namespace
+
 void give_light_to_clusters(SolverState& state, const EmitterTree& emitters,
                             const std::vector<ElementId>& receivers,
                             const SampledLinkOptions& options) {
   parallel_for(receivers.size(), 16, [&](std::size_t i) {
     const ElementTree& tree = state.tree;
-    if (!tree[receivers[i]].is_cluster()) return;
+    const ElementId receiver = receivers[i];
+    if (!tree[receiver].is_cluster()) return;
+    // Too near for one light on all: its cells are lit one by one.
+    if (max_component(state.exitance[receiver]) > 0.f) return;
     const DirectLight light =
-        sample_direct_light(tree, *state.visibility, emitters, receivers[i], options);
-    std::vector<ElementId> open{receivers[i]};
+        sample_direct_light(tree, *state.visibility, emitters, receiver, options);
+    if (options.inside && options.inside->knows(receiver)) {
+      const auto items = options.inside->items(receiver);
+      const std::vector<Rgb> of_emitters = hand_out(*options.inside, receiver, light.of_emitters);
+      const std::vector<Rgb> outer = hand_out(*options.inside, receiver, light.from_outside);
+      for (std::size_t k = 0; k < items.size(); ++k)
+        give_light_to_side(state, items[k].cell, of_emitters[k], outer[k]);
+      return;
+    }
+    const DirectionalIrradiance of_emitters = directional_irradiance(light.of_emitters);
+    const DirectionalIrradiance outer = directional_irradiance(light.from_outside);
+    std::vector<ElementId> open{receiver};
     while (!open.empty()) {
       const ElementId e = open.back();
       open.pop_back();
+      if (!tree[e].is_cluster()) {
+        const Vec3 n = tree.normal(e);
+        give_light_to_side(state, e, of_emitters.irradiance(n), outer.irradiance(n));
+        continue;
+      }
       for (const ElementId child : tree[e].children()) open.push_back(child);
-      if (tree[e].is_cluster() || !tree[e].is_leaf()) continue;
-      const Rgb outer = light.from_outside.irradiance(tree.normal(e));
-      state.given_light[e] = light.of_emitters.irradiance(tree.normal(e)) + outer;
-      if (!state.outer_light.empty()) state.outer_light[e] = outer;
-      state.given_light_known[e] = 1;
     }
   });
 }

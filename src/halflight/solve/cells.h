@@ -19,7 +19,7 @@ void evaluate_material(SolverState& state, ElementId cell);
 void inherit(SolverState& state, const std::vector<ElementId>& split_cells);
 
 // Evaluates the light that sampled links do not carry on the cells of receiving clusters, by one
-// directional irradiance for each cluster.
+// directional irradiance for each cluster. Clusters that hold emitters are left out.
 void give_light_to_clusters(SolverState& state, const EmitterTree& emitters,
                             const std::vector<ElementId>& receivers,
                             const SampledLinkOptions& options);

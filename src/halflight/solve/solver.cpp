@@ -115,7 +115,8 @@ void begin_level(SolverState& state) {
 float relative_error(const SolverState& state, const ReceiverLink& l) {
   const float tolerated = state.tolerance[l.receiver] * state.schedule.irradiance_threshold;
   const float error =
-      weighted_error(state.tree, l.receiver, l.link, state.radiosity) / std::max(tolerated, 1e-30f);
+      weighted_error(state.tree, state.inside.get(), l.receiver, l.link, state.radiosity) /
+      std::max(tolerated, 1e-30f);
   const bool awakened = !l.link.sampled() && average(state.radiosity[l.link.source]) > 0.f;
   return awakened ? std::max(error, std::nextafter(1.f, 2.f)) : error;
 }
@@ -199,6 +200,7 @@ void refine_pairs(SolverState& state, std::vector<ElementPair> pairs, bool shape
   options.largest_blind_cell = 2.f * kBlindCells * smallest_cell(state);
   options.most_links = state.options.most_links;
   options.shape_only = shape_only;
+  options.inside = state.inside.get();
   record.refined = pairs.size();
   RefineCounts counts;
   refine(
@@ -250,6 +252,7 @@ SampledLinkOptions sampled_link_options(const SolverState& state) {
   SampledLinkOptions options;
   options.feature_size = state.options.feature_size;
   options.largest_cluster = kClusterSizes * state.options.feature_size;
+  options.inside = state.inside.get();
   const float more =
       std::clamp(kErrorOfPlainSampling / state.options.error, 1.f, kMostOversampling);
   options.rays_per_cell = static_cast<int>(more * static_cast<float>(options.rays_per_cell));
@@ -409,6 +412,11 @@ SolverState make_state(const std::shared_ptr<const World>& world, const SolveOpt
   parallel_for(n, 256, [&](std::size_t i) {
     if (!state.tree[ElementId(i)].is_cluster()) evaluate_material(state, ElementId(i));
   });
+  if (state.options.intra_cluster)
+    state.inside = std::make_shared<const ClusterVisibility>(
+        state.tree, state.opacity,
+        choose_receivers(state.tree, {state.tree.root()},
+                         kClusterSizes * state.options.feature_size));
   pull(state);
   state.schedule.pairs = {{state.tree.root(), state.tree.root()}};
   if (levels_of_links(state.options) == 0) state.schedule.stage = Stage::shape;

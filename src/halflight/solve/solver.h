@@ -12,6 +12,7 @@
 #include "halflight/hierarchy/elements.h"
 #include "halflight/rays/world.h"
 #include "halflight/solve/schedule.h"
+#include "halflight/transport/cluster_visibility.h"
 #include "halflight/transport/emitter_tree.h"
 #include "halflight/transport/link.h"
 #include "halflight/transport/refine.h"
@@ -35,7 +36,9 @@ struct SolveOptions {
   float error = 0.05f;  // aimed-at relative RMS error of irradiance
   LinkMaker links = LinkMaker::sampled;
   HierarchyKind hierarchy = HierarchyKind::size_grid;  // who groups surfaces into clusters
-  int levels = 3;                                      // of the threshold, coarse to fine
+  // Light on a cluster that receives as one goes to what is seen of it, not to all that faces it.
+  bool intra_cluster = true;
+  int levels = 3;  // of the threshold, coarse to fine
   std::size_t most_links = 40'000'000;
 };
 
@@ -45,6 +48,8 @@ struct SolverState {
   std::shared_ptr<const Visibility> visibility{};
   ElementTree tree;
   SolveOptions options;  // resolved: no zeros that stand for defaults
+  // Inside clusters that receive and send as one; null: not asked for.
+  std::shared_ptr<const ClusterVisibility> inside{};
 
   IdVector<ElementId, float> opacity{};    // of cells: share of the light that they stop
   IdVector<ElementId, Rgb> reflectance{};  // of cells, of all light that falls on them

@@ -1,5 +1,10 @@
 #include "halflight/solve/sweep.h"
 
+#include <array>
+#include <bitset>
+
+#include <glm/matrix.hpp>
+
 #include "halflight/base/parallel.h"
 #include "halflight/transport/spherical_harmonics.h"
 
@@ -21,48 +26,155 @@ struct ClusterNumbers {
   std::uint32_t operator[](ElementId e) const { return of_element[e.value]; }
 };
 
-// What an element sends along a link: everything, or along sampled links what it reflects.
-struct Sent {
-  const IdVector<ElementId, Rgb>& radiosity;
-  const IdVector<ElementId, Rgb>& exitance;
-  Rgb operator()(ElementId s, bool sampled) const {
-    return sampled ? radiosity[s] - exitance[s] : radiosity[s];
+std::span<const Link> links_of(const SolverState& state, ElementId receiver) {
+  return (state.sampled[receiver] != 0 ? state.sampled_links : state.links).of(receiver);
+}
+
+// Links to clusters of which it is known what is seen from where: each belongs to a cell of
+// directions, once for sources outside the cluster and once for those inside.
+class InnerLinks {
+ public:
+  explicit InnerLinks(const SolverState& state) {
+    if (!state.inside) return;
+    const auto clusters = state.inside->clusters();
+    first_.resize(clusters.size() + 1, 0);
+    for (std::size_t c = 0; c < clusters.size(); ++c)
+      first_[c + 1] = first_[c] + links_of(state, clusters[c]).size();
+    cell_.resize(first_.back());
+    parallel_for(clusters.size(), 16, [&](std::size_t c) {
+      std::size_t at = first_[c];
+      for (const Link& l : links_of(state, clusters[c]))
+        cell_[at++] = static_cast<std::uint8_t>(
+            l.direction.all_around()
+                ? kNoCell
+                : direction_cell(l.direction.unpack()) +
+                      (state.tree.contains(clusters[c], l.source) ? kDirectionCells : 0));
+    });
   }
+
+  // Light from each cell, as E(n) = matrix * n where it is above zero, given to the items that are
+  // seen from there; from inside, to what is hidden.
+  template <class Sent>
+  void hand_out(SolverState& state, const Sent& sent) const {
+    if (!state.inside) return;
+    const ClusterVisibility& inside = *state.inside;
+    parallel_for(inside.clusters().size(), 16, [&](std::size_t c) {
+      const ElementId cluster = inside.clusters()[c];
+      std::array<glm::mat3, 2 * kDirectionCells> from;
+      std::array<std::uint8_t, 2 * kDirectionCells> used{};
+      std::size_t at = first_[c];
+      for (const Link& l : links_of(state, cluster)) {
+        const std::uint8_t cell = cell_[at++];
+        if (cell == kNoCell || !l.sampled()) continue;
+        if (!used[cell]) from[cell] = glm::mat3(0.f);
+        used[cell] = 1;
+        from[cell] += glm::outerProduct(l.weight * sent(l.source, cluster), l.direction.unpack());
+      }
+      std::array<int, 2 * kDirectionCells> cells;
+      int count = 0;
+      for (int cell = 0; cell < 2 * kDirectionCells; ++cell)
+        if (used[cell]) cells[count++] = cell;
+      const auto items = inside.items(cluster);
+      for (std::size_t i = 0; i < items.size(); ++i) {
+        Rgb sum(0.f);
+        for (int k = 0; k < count; ++k) {
+          const bool hidden = cells[k] >= kDirectionCells;
+          const float seen =
+              inside.share(cluster, i, hidden ? cells[k] - kDirectionCells : cells[k]);
+          const float part = hidden ? 1.f - seen : seen;
+          if (part > 0.f) sum += part * glm::max(from[cells[k]] * items[i].normal, Rgb(0.f));
+        }
+        state.irradiance[items[i].cell] += sum;
+      }
+    });
+  }
+
+ private:
+  static constexpr int kNoCell = 255;
+  static_assert(2 * kDirectionCells <= kNoCell);
+
+  std::vector<std::size_t> first_;  // of each cluster
+  std::vector<std::uint8_t> cell_;  // of its links
 };
 
-// I_r = sum of weight * sent(s) over the links of each element alone.
+// What clusters whose inside is known show of their radiosity to the receivers of their links, by
+// cells of directions. Rays meet cells: only refined links have clusters for sources.
+class ShownRadiosity {
+ public:
+  explicit ShownRadiosity(const SolverState& state) {
+    if (!state.inside) return;
+    wanted_.resize(state.inside->clusters().size());
+    for (std::size_t i = 0; i < state.tree.size(); ++i)
+      for (const Link& l : state.links.of(ElementId(i)))
+        if (state.inside->knows(l.source))
+          wanted_[state.inside->number(l.source)][cell_of(state, l.source, ElementId(i))] = true;
+    of_.resize(wanted_.size());
+  }
+  void update(const SolverState& state) {
+    parallel_for(wanted_.size(), 64, [&](std::size_t c) {
+      for (int cell = 0; cell < kDirectionCells; ++cell)
+        if (wanted_[c][cell])
+          of_[c][cell] =
+              state.inside->seen_radiosity(state.inside->clusters()[c], cell, state.radiosity);
+    });
+  }
+  Rgb operator()(const SolverState& state, ElementId source, ElementId receiver) const {
+    if (state.sampled[receiver] != 0) return state.radiosity[source] - state.exitance[source];
+    if (!state.inside || !state.inside->knows(source)) return state.radiosity[source];
+    return of_[state.inside->number(source)][cell_of(state, source, receiver)];
+  }
+
+ private:
+  static int cell_of(const SolverState& state, ElementId source, ElementId receiver) {
+    return direction_cell(state.tree[receiver].center() - state.tree[source].center());
+  }
+
+  std::vector<std::bitset<kDirectionCells>> wanted_;  // of clusters
+  std::vector<std::array<Rgb, kDirectionCells>> of_;
+};
+
+// What the sweeps need beside the state, made once for all.
+struct SweepPlan {
+  ClusterNumbers number;
+  InnerLinks inner;
+  ShownRadiosity shown;
+  std::vector<DirectionalIrradiance> arriving;  // at clusters
+
+  explicit SweepPlan(const SolverState& state)
+      : number(state.tree), inner(state), shown(state), arriving(number.count) {}
+};
+
+// I_r = sum of weight * sent(s, r) over the links of each element alone. Clusters whose inside is
+// known hand theirs out at once, but for light from all around.
 template <class Send>
-void gather(SolverState& state, const ClusterNumbers& number,
-            std::vector<DirectionalIrradiance>& arriving, const Send& sent) {
+void gather(SolverState& state, SweepPlan& plan, const Send& sent) {
   const ElementTree& tree = state.tree;
   parallel_for(tree.size(), kGrain, [&](std::size_t i) {
     const ElementId r(i);
-    const bool sampled = state.sampled[r] != 0;
-    const std::span<const Link> links = (sampled ? state.sampled_links : state.links).of(r);
     if (tree[r].is_cluster()) {
-      DirectionalIrradiance& sum = arriving[number[r]];
+      const bool known = state.inside && state.inside->knows(r);
+      DirectionalIrradiance& sum = plan.arriving[plan.number[r]];
       sum = {};
-      for (const Link& l : links) {
+      for (const Link& l : links_of(state, r)) {
         if (!l.sampled()) continue;
-        const Rgb e = l.weight * sent(l.source, sampled);
         if (l.direction.all_around())
-          sum.add_isotropic(e);
-        else
-          sum.add(l.direction.unpack(), e);
+          sum.add_isotropic(l.weight * sent(l.source, r));
+        else if (!known)
+          sum.add(l.direction.unpack(), l.weight * sent(l.source, r));
       }
       return;
     }
     Rgb sum(0.f);
-    for (const Link& l : links)
-      if (l.sampled()) sum += l.weight * sent(l.source, sampled);
+    for (const Link& l : links_of(state, r))
+      if (l.sampled()) sum += l.weight * sent(l.source, r);
     state.irradiance[r] = sum;
   });
+  plan.inner.hand_out(state, sent);
 }
 
 // Parents come before their children, so one pass in id order hands everything down: all but to
 // receivers whose sampled links bring the whole light.
-void push(SolverState& state, const ClusterNumbers& number,
-          std::vector<DirectionalIrradiance>& arriving) {
+void push(SolverState& state, SweepPlan& plan) {
   const ElementTree& tree = state.tree;
   const std::size_t top = tree.initial_size();
   const auto inherits = [&](ElementId e) {
@@ -71,12 +183,13 @@ void push(SolverState& state, const ClusterNumbers& number,
   for (std::size_t i = 1; i < top; ++i) {
     const ElementId e(i);
     if (tree[e].is_cluster() && inherits(e))
-      arriving[number[e]] += arriving[number[tree[e].parent]];
+      plan.arriving[plan.number[e]] += plan.arriving[plan.number[tree[e].parent]];
   }
   parallel_for(top, kGrain, [&](std::size_t i) {
     const ElementId e(i);
-    if (!tree[e].is_cluster() && inherits(e))
-      state.irradiance[e] += arriving[number[tree[e].parent]].irradiance(tree.normal(e));
+    if (tree[e].is_cluster() || !inherits(e)) return;
+    const DirectionalIrradiance& from_clusters = plan.arriving[plan.number[tree[e].parent]];
+    if (from_clusters.any()) state.irradiance[e] += from_clusters.irradiance(tree.normal(e));
   });
   for (std::size_t i = top; i < tree.size(); ++i)
     if (inherits(ElementId(i)))
@@ -88,10 +201,9 @@ void push(SolverState& state, const ClusterNumbers& number,
 // estimated one by one, and those of a nook may add up to much more than 1: pale surfaces there
 // would feed each other without end. Sums a little above 1 are noise, and cutting only those would
 // lose energy.
-IdVector<ElementId, float> find_row_limits(SolverState& state, const ClusterNumbers& number,
-                                           std::vector<DirectionalIrradiance>& arriving) {
-  gather(state, number, arriving, [&](ElementId s, bool) { return Rgb(state.opacity[s]); });
-  push(state, number, arriving);
+IdVector<ElementId, float> find_row_limits(SolverState& state, SweepPlan& plan) {
+  gather(state, plan, [&](ElementId s, ElementId) { return Rgb(state.opacity[s]); });
+  push(state, plan);
   IdVector<ElementId, float> limits(state.tree.size());
   parallel_for(limits.size(), kGrain, [&](std::size_t i) {
     const ElementId e(i);
@@ -156,13 +268,13 @@ void pull(SolverState& state) {
 }
 
 Sweeps sweep(SolverState& state, float tolerance, int most_sweeps) {
-  const ClusterNumbers number(state.tree);
-  std::vector<DirectionalIrradiance> arriving(number.count);
-  if (state.row_limits.empty()) state.row_limits = find_row_limits(state, number, arriving);
+  SweepPlan plan(state);
+  if (state.row_limits.empty()) state.row_limits = find_row_limits(state, plan);
   Sweeps done;
   while (done.count < most_sweeps && !done.converged) {
-    gather(state, number, arriving, Sent{state.radiosity, state.exitance});
-    push(state, number, arriving);
+    plan.shown.update(state);
+    gather(state, plan, [&](ElementId s, ElementId r) { return plan.shown(state, s, r); });
+    push(state, plan);
     finish_leaves(state);
     const Change change = change_of_radiosity(state);
     pull(state);

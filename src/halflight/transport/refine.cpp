@@ -41,8 +41,8 @@ class Oracle {
     const ElementTree& tree = scene_.tree;
     if (r != s && back_facing(tree, r, s)) return {};
     if (options_.shape_only && r != s && !can_split(r)) return {};
-    const float radiosity = average(scene_.radiosity[s]);
-    const TransferBounds bounds = bound_transfer(tree, r, s);
+    const float radiosity = average(sent_radiosity(tree, scene_.inside, scene_.radiosity, s, r));
+    const TransferBounds bounds = bound_transfer(tree, scene_.inside, r, s);
     if (!(radiosity > 0.f)) {
       Link dark;
       dark.source = s;
@@ -101,6 +101,9 @@ class Oracle {
     verdict.link.weight = std::min(t.weight, bounds.largest_weight);
     verdict.link.error = bounds.largest_weight / kNegligible;
     verdict.link.direction = t.direction;
+    // The weight is a mean over all that faces the source; only what is seen from there gets it.
+    if (scene_.inside && scene_.inside->knows(r) && !t.direction.all_around())
+      verdict.link.weight *= scene_.inside->concentration(r, t.direction.unpack(), false);
     return verdict;
   }
 
@@ -176,7 +179,8 @@ void refine(ElementTree& tree, const Visibility& visibility,
     pairs.resize(pairs.size() - n);
     const bool accept_all = links.size() > options.most_links || progress.cancelled();
 
-    const TransferScene scene{tree, visibility, options.feature_size, radiosity, opacity};
+    const TransferScene scene{tree,      visibility, options.feature_size,
+                              radiosity, opacity,    options.inside};
     const Oracle oracle(scene, options, tolerance, accept_all);
     verdicts.assign(n, {});
     parallel_for(n, 64, [&](std::size_t i) {
@@ -198,9 +202,9 @@ void refine(ElementTree& tree, const Visibility& visibility,
   }
 }
 
-float weighted_error(const ElementTree& tree, ElementId receiver, const Link& link,
-                     const IdVector<ElementId, Rgb>& radiosity) {
-  return link.error * average(radiosity[link.source]) *
+float weighted_error(const ElementTree& tree, const ClusterVisibility* inside, ElementId receiver,
+                     const Link& link, const IdVector<ElementId, Rgb>& radiosity) {
+  return link.error * average(sent_radiosity(tree, inside, radiosity, link.source, receiver)) *
          std::sqrt(tree[receiver].area / tree[tree.root()].area);
 }
 

@@ -28,6 +28,8 @@ struct RefineOptions {
   float largest_blind_cell = kInfinity;
   // Only the shape of the elements is wanted: pairs are judged, cells are split, no link is made.
   bool shape_only = false;
+  // Inside clusters that exchange light as one; null: not known.
+  const ClusterVisibility* inside = nullptr;
   std::size_t most_links = 40'000'000;  // beyond it pairs are accepted as they are, and counted
 };
 
@@ -52,7 +54,7 @@ void refine(ElementTree& tree, const Visibility& visibility,
             std::vector<ReceiverLink>& links, RefineCounts& counts);
 
 // Error of a link in irradiance at its receiver, in the units of irradiance_threshold.
-float weighted_error(const ElementTree& tree, ElementId receiver, const Link& link,
-                     const IdVector<ElementId, Rgb>& radiosity);
+float weighted_error(const ElementTree& tree, const ClusterVisibility* inside, ElementId receiver,
+                     const Link& link, const IdVector<ElementId, Rgb>& radiosity);
 
 }  // namespace halflight

@@ -22,14 +22,14 @@ struct RayTally {
   int buried = 0;
 
   void add(const ElementTree& tree, const IdVector<ElementId, float>& opacity, ElementId receiver,
-           const RayHit& hit, float weight, PackedDirection direction = {}) {
+           const RayHit& hit, float weight) {
     const ElementId source = tree.leaf_hit(hit);
     if (!source.valid()) {
       // A side that never sees light: the ray began in a place covered by a closed body.
       ++buried;
       return;
     }
-    links.push_back({receiver, {source, weight / opacity[source], 0.f, direction}});
+    links.push_back({receiver, {source, weight / opacity[source], 0.f, {}}});
   }
   // The rays that began in the open stand for the covered ones too: the receiver's light is that
   // of its visible part.
@@ -83,10 +83,18 @@ ElementId facing_cell(const ElementTree& tree, ElementId cluster, const Vec3& w,
   return {};
 }
 
+// What a mean over all cells of a cluster that face w becomes where the cluster is seen from there,
+// or where it is hidden.
+float concentration(const ClusterVisibility* inside, ElementId cluster, const Vec3& w,
+                    bool hidden) {
+  return inside && inside->knows(cluster) ? inside->concentration(cluster, w, hidden) : 1.f;
+}
+
 // Uniform directions, each seen from a cell that faces it: radiance B / pi over 4 pi / n.
 void sample_cluster(const ElementTree& tree, const RayScene& rays,
-                    const IdVector<ElementId, float>& opacity, ElementId cluster, int n,
-                    std::vector<ReceiverLink>& links) {
+                    const IdVector<ElementId, float>& opacity, ElementId cluster,
+                    const SampledLinkOptions& options, std::vector<ReceiverLink>& links) {
+  const int n = options.rays_per_cluster;
   const Vec2 shift = random_shift(hash(cluster.value, 31));
   RayTally tally{links};
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
@@ -96,8 +104,13 @@ void sample_cluster(const ElementTree& tree, const RayScene& rays,
     if (!cell.valid()) continue;
     const Vec3 x = tree.sample(cell, random_shift(seed)).position;
     const auto hit = rays.closest_hit(rays.lift(x, tree.normal(cell)), w, kInfinity, seed);
-    if (hit)
-      tally.add(tree, opacity, cluster, *hit, 4.f / static_cast<float>(n), PackedDirection(w));
+    if (!hit) continue;
+    const std::size_t before = links.size();
+    tally.add(tree, opacity, cluster, *hit, 4.f / static_cast<float>(n));
+    if (links.size() == before) continue;
+    Link& link = links.back().link;
+    link.direction = PackedDirection(w);
+    link.weight *= concentration(options.inside, cluster, w, tree.contains(cluster, link.source));
   }
   tally.make_up_for_buried(n);
 }
@@ -113,6 +126,10 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
   const auto n = static_cast<std::uint32_t>(options.shadow_rays_per_cluster);
   const float share = 1.f / static_cast<float>(n);
   DirectLight light;
+  const auto add = [&](std::vector<Arrival>& to, const Vec3& w, const Rgb& facing) {
+    if (max_component(facing) > 0.f)
+      to.push_back({w, facing * concentration(options.inside, cluster, w, false)});
+  };
   // A point of the cluster that sees the direction, lifted off its cell.
   const auto facing_point = [&](const Vec3& w, std::uint64_t seed) -> std::optional<Vec3> {
     const ElementId cell = facing_cell(tree, cluster, w, seed);
@@ -133,8 +150,8 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
     const Vec3 w = between / std::sqrt(squared);
     const float cosine = -glm::dot(y->normal, w);
     if (!(cosine > 0.f)) continue;
-    light.of_emitters.add(
-        w, share * cosine / squared * emitters.seen(y->emitter, *x, y->position, s) * y->power);
+    add(light.of_emitters, w,
+        share * cosine / squared * emitters.seen(y->emitter, *x, y->position, s) * y->power);
   }
   for (const PunctualLight& lamp : world.geometry.lights) {
     const Vec3 w = direction_to(lamp, c.center());
@@ -143,7 +160,7 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
     const float visible = lamp.kind == Light::Kind::directional
                               ? visibility.transmittance_to_sky(*x, w, s, 0.f)
                               : visibility.transmittance({*x, lamp.position, s, 0.f});
-    light.from_outside.add(w, visible * facing_irradiance(lamp, *x));
+    add(light.from_outside, w, visible * facing_irradiance(lamp, *x));
   }
   if (max_component(world.scene.sky) > 0.f)
     for (std::uint32_t k = 0; k < n; ++k) {
@@ -151,8 +168,7 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
       const auto x = facing_point(w, hash(cluster.value, k, 47));
       if (!x) continue;
       const float angle = between_rays(4.f * kPi, options.shadow_rays_per_cluster);
-      light.from_outside.add(
-          w,
+      add(light.from_outside, w,
           4.f * kPi * share * visibility.transmittance_to_sky(*x, w, s, angle) * world.scene.sky);
     }
   return light;
@@ -181,7 +197,7 @@ std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& 
       receivers.size(), 64, [&](std::size_t i, std::vector<ReceiverLink>& links) {
         const ElementId e = receivers[i];
         if (tree[e].is_cluster())
-          sample_cluster(tree, rays, opacity, e, options.rays_per_cluster, links);
+          sample_cluster(tree, rays, opacity, e, options, links);
         else
           sample_cell(tree, rays, opacity, e, options.rays_per_cell, links);
       });

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "halflight/hierarchy/elements.h"
+#include "halflight/transport/cluster_visibility.h"
 #include "halflight/transport/emitter_tree.h"
 #include "halflight/transport/link.h"
 #include "halflight/transport/spherical_harmonics.h"
@@ -22,6 +23,10 @@ struct SampledLinkOptions {
   // Clusters up to this diameter receive as one, with directional irradiance (metres).
   float largest_cluster = 0.f;
   float feature_size = 0.f;  // of shadows in direct light that count; 0: all
+  // Where it knows a receiving cluster, a link's weight counts where the cluster is seen from the
+  // link's direction, or in the hidden rest when the source lies inside the cluster. Null: on all
+  // that faces the direction.
+  const ClusterVisibility* inside = nullptr;
 };
 
 // The cut of the tree below some elements that receives: small clusters, and leaf cells outside
@@ -38,12 +43,12 @@ std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& 
                                        const SampledLinkOptions& options);
 
 struct DirectLight {
-  DirectionalIrradiance of_emitters;
-  DirectionalIrradiance from_outside;  // punctual lights and the sky
+  std::vector<Arrival> of_emitters;
+  std::vector<Arrival> from_outside;  // punctual lights and the sky
 };
 
-// Light on a receiving cluster straight from emitters, punctual lights and the sky, as a function
-// of the normal; shadows by one ray from each of some points of the cluster.
+// Light on a receiving cluster straight from emitters, punctual lights and the sky; shadows by one
+// ray from each of some points of the cluster.
 DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visibility,
                                 const EmitterTree& emitters, ElementId cluster,
                                 const SampledLinkOptions& options);

@@ -39,6 +39,7 @@ struct DirectionalIrradiance {
     for (int i = 0; i < 9; ++i) coefficients[i] += o.coefficients[i];
     return *this;
   }
+  bool any() const { return coefficients[0] != Rgb(0.f); }
   // Ringing of the truncated series may go below zero: there no light is the better answer.
   Rgb irradiance(const Vec3& n) const {
     constexpr std::array<float, 9> cosine_lobe{kPi,           2.f * kPi / 3, 2.f * kPi / 3,

@@ -81,7 +81,8 @@ float cell_form_factor(const ElementTree& tree, const Vec3& x, const Vec3& n, El
 
 }  // namespace
 
-TransferBounds bound_transfer(const ElementTree& tree, ElementId receiver, ElementId source) {
+TransferBounds bound_transfer(const ElementTree& tree, const ClusterVisibility* inside,
+                              ElementId receiver, ElementId source) {
   const Element &r = tree[receiver], &s = tree[source];
   TransferBounds bounds;
   const float near = distance_between(r.box, s.box);
@@ -94,7 +95,8 @@ TransferBounds bound_transfer(const ElementTree& tree, ElementId receiver, Eleme
   float facing = 1.f;
   if (!s.is_cluster()) facing *= std::clamp(height_above(tree, source, r.box) / near, 0.f, 1.f);
   if (!r.is_cluster()) facing *= std::clamp(height_above(tree, receiver, s.box) / near, 0.f, 1.f);
-  bounds.largest_weight = std::min(1.f, facing * s.area / (kPi * near * near));
+  const float area = inside && inside->knows(source) ? inside->largest_silhouette(source) : s.area;
+  bounds.largest_weight = std::min(1.f, facing * area / (kPi * near * near));
   bounds.kernel_variation = std::min(1.f, (r.diameter() + s.diameter()) / far);
   return bounds;
 }
@@ -126,6 +128,12 @@ TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receive
   const auto power = [&](ElementId e) { return average(scene.radiosity[e]) * tree[e].area; };
 
   const RayScene& rays = scene.visibility.world().rays;
+  // Share of a sampled cell that its own cluster leaves unhidden.
+  const bool receiver_known = scene.inside && scene.inside->knows(receiver);
+  const bool source_known = scene.inside && scene.inside->knows(source);
+  const auto seen = [&](bool known, const CellSample& at, const Vec3& w) {
+    return known ? scene.inside->share(tree.side_root(tree[at.cell].side), direction_cell(w)) : 1.f;
+  };
   const float source_width = s.box.middle_side();
   const bool to_cell = !r.is_cluster();
   const bool near_cell =
@@ -187,7 +195,7 @@ TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receive
     const float value = kernel * scene.visibility.transmittance({rays.lift(x.position, x.normal),
                                                                  rays.lift(y.position, y.normal),
                                                                  scene.feature_size, width});
-    unoccluded += weight * kernel;
+    unoccluded += weight * kernel * seen(receiver_known, x, w) * seen(source_known, y, -w);
     sum += weight * value;
     sum_of_squares += weight * value * value;
     direction += weight * value * w;
@@ -202,6 +210,14 @@ TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receive
     const float variance = sum_of_squares / weights - estimate.weight * estimate.weight;
     estimate.deviation = std::sqrt(std::max(0.f, variance * effective / (effective - 1.f)));
   }
+  if (source_known) {
+    const float sent =
+        average(sent_radiosity(tree, scene.inside, scene.radiosity, source, receiver));
+    const float per_sent = sent > 0.f ? average(scene.radiosity[source]) / sent : 0.f;
+    estimate.weight *= per_sent;
+    estimate.unoccluded *= per_sent;
+    estimate.deviation *= per_sent;
+  }
   if (!to_cell && glm::dot(direction, direction) > 0.f)
     estimate.direction = PackedDirection(glm::normalize(direction));
   return estimate;
@@ -212,7 +228,7 @@ TransferEstimate estimate_touching_transfer(const TransferScene& scene, ElementI
   const ElementTree& tree = scene.tree;
   const auto area = [&](ElementId e) { return tree[e].area; };
   const RayScene& rays = scene.visibility.world().rays;
-  const float mean_radiosity = average(scene.radiosity[source]);
+  const float sent = average(sent_radiosity(tree, scene.inside, scene.radiosity, source, receiver));
   const std::uint64_t seed = hash(receiver.value, source.value, stream);
   const Vec2 shift_x = random_shift(seed), shift_w = random_shift(hash(seed, 3));
   const float choice = to_unit_float(hash(seed, 5));
@@ -230,10 +246,10 @@ TransferEstimate estimate_touching_transfer(const TransferScene& scene, ElementI
     // The ray stopped in proportion to the opacity, by which radiosity is already reduced.
     const float radiosity = average(scene.radiosity[at]) / scene.opacity[at];
     while (at.value > source.value) at = tree[at].parent;  // parents have smaller ids
-    if (at == source) sum += radiosity / mean_radiosity;
+    if (at == source) sum += radiosity / sent;
   }
   TransferEstimate estimate;
-  estimate.weight = sum / static_cast<float>(samples);
+  if (sent > 0.f) estimate.weight = sum / static_cast<float>(samples);
   return estimate;
 }
 

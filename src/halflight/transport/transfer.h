@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "halflight/hierarchy/elements.h"
+#include "halflight/transport/cluster_visibility.h"
 #include "halflight/transport/link.h"
 #include "halflight/visibility/visibility.h"
 
@@ -17,15 +18,20 @@ struct TransferScene {
   float feature_size;                         // of shadows on the receiver
   const IdVector<ElementId, Rgb>& radiosity;  // mean over the element's area
   const IdVector<ElementId, float>& opacity;  // of cells
+  // Null: nothing is known of the inside of clusters.
+  const ClusterVisibility* inside = nullptr;
 };
 
-// Cheap geometry of a pair, before any ray. Per unit radiosity of the source.
+// All weights are per unit of what the source shows to the receiver (sent_radiosity).
+
+// Cheap geometry of a pair, before any ray.
 struct TransferBounds {
   float largest_weight = 0.f;    // upper bound of the weight, 1 when the boxes touch
   float kernel_variation = 1.f;  // relative variation of the kernel over the pair, about 0 to 1
   bool touching = false;         // boxes overlap: no distance to speak of
 };
-TransferBounds bound_transfer(const ElementTree& tree, ElementId receiver, ElementId source);
+TransferBounds bound_transfer(const ElementTree& tree, const ClusterVisibility* inside,
+                              ElementId receiver, ElementId source);
 
 // Neither faces the other: nothing can be transferred, whatever stands between.
 bool back_facing(const ElementTree& tree, ElementId receiver, ElementId source);
@@ -37,9 +43,10 @@ struct TransferEstimate {
   PackedDirection direction;
 };
 
-// Mean over `samples` point pairs of R_r R_s V A_s / (pi r^2), where the cosine R of a receiving
-// cluster is left to the distribution (1 for cells that face the source) and near cells use the
-// closed-form polygon form factor. Different `stream`s give independent estimates.
+// Mean over `samples` point pairs of R_r R_s V A_s / (pi r^2) (source points by power), where the
+// cosine R of a receiving cluster is left to the distribution (1 for cells that face the source)
+// and near cells use the closed-form polygon form factor. Different `stream`s give independent
+// estimates.
 TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receiver, ElementId source,
                                    int samples, std::uint64_t stream);
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "halflight/scene/procedural/books.h"
 #include "halflight/scene/procedural/cornell_box.h"
 #include "halflight/scene/procedural/cube_groups.h"
 #include "halflight/scene/procedural/doorway.h"
@@ -31,6 +32,7 @@ std::vector<Recipe> scene_recipes() {
       recipe("cube-groups", "four groups of cubes between a small light and a wall",
              cube_groups_scene),
       recipe("loose-triangles", "random two-sided triangles in a room", loose_triangles_scene),
+      recipe("books", "a shelf of books lit by one light", books_scene),
       recipe("plants", "a room full of potted plants and books: porous clutter", plants_scene),
       recipe("office", "desks, shelves of books and many small things", office_scene),
   };
