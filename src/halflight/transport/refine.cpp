@@ -58,10 +58,9 @@ class Oracle {
     if (scale * bounds.largest_weight <= kNegligible * threshold) return accept(r, s, 1, bounds);
     const bool clusters = tree[r].is_cluster() || tree[s].is_cluster();
     if (bounds.touching && clusters && can_refine) return {finer, {}};
-    const float hopeless = clusters && bounds.kernel_variation >= 0.5f
-                               ? bounds.largest_weight * bounds.kernel_variation / kHopeless
-                               : 0.f;
-    if (can_refine && scale * hopeless > threshold) return {finer, {}};
+    if (can_refine && clusters && bounds.kernel_variation >= 0.5f &&
+        scale * bounds.largest_weight * bounds.kernel_variation > kHopeless * threshold)
+      return {finer, {}};
     if (!can_refine) {
       Verdict verdict = accept(r, s, kFinalSamples, bounds);
       if (!accept_all_) verdict.link.error = 0.f;
@@ -77,10 +76,7 @@ class Oracle {
                         kUnseenVariation * bounds.kernel_variation * pilot.weight;
     if (scale * error > threshold) return {finer, {}};
     Verdict verdict = accept(r, s, kKeptSamples, bounds);
-    // What a lower threshold would look at again: kernels that vary, and large cells that few
-    // samples were enough for.
-    const bool dim = scale * pilot.unoccluded <= threshold;
-    verdict.link.error = std::max({error, hopeless, is_blind(r) && dim ? pilot.unoccluded : 0.f});
+    verdict.link.error = error;
     return verdict;
   }
 
