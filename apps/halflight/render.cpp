@@ -36,8 +36,9 @@ Result<void> check(const RenderArguments& arguments) {
 Result<Image> solved_image(const RenderArguments& arguments,
                            const std::shared_ptr<const World>& world, const View& view,
                            const Progress& progress) {
-  const Result<SolvePlan> plan = resolve(arguments.solve);
+  Result<SolvePlan> plan = resolve(arguments.solve);
   if (!plan) return tl::unexpected(plan.error());
+  if (auto ok = complete(*plan, arguments.solve, *world); !ok) return tl::unexpected(ok.error());
   SolverState state = make_state(world, plan->options);
   {
     // A deadline ends the refinement and not the picture.
@@ -48,6 +49,7 @@ Result<Image> solved_image(const RenderArguments& arguments,
   const SolutionReader reader(state, kMeshReading);
   LitMeshOptions mesh_options;
   mesh_options.feature_size = state.options.feature_size;
+  mesh_options.finest = finest_mesh_edge(state);
   const LitMesh mesh = build_lit_mesh(
       world->scene, world->geometry,
       [&](std::span<const ReadingPoint> points) { return reader(points); }, mesh_options, progress);

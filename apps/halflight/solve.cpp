@@ -58,6 +58,7 @@ Result<void> write_lit(const std::filesystem::path& path, const SolverState& sta
   const SolutionReader reader(state, kMeshReading);
   LitMeshOptions options;
   options.feature_size = state.options.feature_size;
+  options.finest = finest_mesh_edge(state);
   const auto start = std::chrono::steady_clock::now();
   const LitMesh mesh = build_lit_mesh(
       world.scene, world.geometry,
@@ -81,7 +82,7 @@ void warn_without_output(const Outputs& outputs) {
 Result<int> run(const SolveCommand& command) {
   Report report;
   const auto start = std::chrono::steady_clock::now();
-  const Result<SolvePlan> plan = resolve(command.solve);
+  Result<SolvePlan> plan = resolve(command.solve);
   if (!plan) return tl::unexpected(plan.error());
   std::vector<Sensor> sensors;
   if (!command.outputs.points.empty()) {
@@ -98,6 +99,7 @@ Result<int> run(const SolveCommand& command) {
   auto phase = std::chrono::steady_clock::now();
   const auto world = make_world(std::move(*scene));
   report.end_phase("rays", phase);
+  if (auto ok = complete(*plan, command.solve, *world); !ok) return tl::unexpected(ok.error());
 
   Progress progress(progress_listener(command.solve));
   const Interruptible interruptible(progress);

@@ -9,12 +9,18 @@
 #include <fmt/format.h>
 
 #include "halflight/base/quantities.h"
+#include "halflight/io/feature_size_rules.h"
+#include "halflight/output/choose_view.h"
+#include "halflight/rays/automatic_view.h"
+#include "halflight/rays/path_tracer.h"
 #include "terminal_progress.h"
 
 namespace halflight::app {
 namespace {
 
 constexpr double kLongestTime = 1e8;  // seconds; three years
+constexpr int kUsualWidth = 1280;     // of a view that asks for no size, pixels
+constexpr float kUsualAspect = 16.f / 9.f;
 
 }  // namespace
 
@@ -33,6 +39,15 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
                   "refined: by the error oracle alone; sampled: by rays on the elements it shaped "
                   "(the default); N: no more than these")
       ->type_name("refined|sampled|N");
+  command
+      .add_option("--importance", arguments.importance,
+                  "a view (as for render --camera): light only counts for what is seen there")
+      ->type_name("VIEW|none")
+      ->capture_default_str();
+  command
+      .add_option("--feature-sizes", arguments.feature_sizes,
+                  "feature sizes by material or node, see docs/command-line.md")
+      ->type_name("RULES.toml");
   std::map<std::string, HierarchyKind> hierarchies;
   for (const NamedHierarchy& h : kHierarchies) hierarchies.emplace(h.name, h.kind);
   command.add_option("--hierarchy", arguments.hierarchy, "who groups surfaces into clusters")
@@ -87,6 +102,43 @@ Result<SolvePlan> resolve(const SolveArguments& arguments) {
     if (const Result<double> time = parse_duration(arguments.time); !time)
       return tl::unexpected(time.error());
   return plan;
+}
+
+namespace {
+
+Result<ViewOfInterest> view_of_interest(const std::string& wish, const World& world) {
+  const Result<View> view = choose_view(wish, world.scene, world.geometry,
+                                        [&] { return automatic_view(PathTracer(world)); });
+  if (!view) return tl::unexpected(view.error());
+  if (view->width > 0 && view->height > 0)
+    return ViewOfInterest{view->camera, view->width, view->height};
+  const float aspect = view->camera.aspect > 0.f ? view->camera.aspect : kUsualAspect;
+  return ViewOfInterest{view->camera, kUsualWidth,
+                        std::max(1, static_cast<int>(static_cast<float>(kUsualWidth) / aspect))};
+}
+
+}  // namespace
+
+Result<void> complete(SolvePlan& plan, const SolveArguments& arguments, const World& world) {
+  if (!arguments.feature_sizes.empty()) {
+    auto rules = read_feature_size_rules(arguments.feature_sizes);
+    if (!rules) return tl::unexpected(rules.error());
+    if (auto ok = check_rules(*rules, world, arguments.feature_sizes); !ok) return ok;
+    plan.options.feature_size_rules = std::move(*rules);
+  }
+  const auto pixels = pixel_size_wish(arguments.visibility.feature_size);
+  if (!pixels) return tl::unexpected(pixels.error());
+  if (*pixels) {
+    const Result<ViewOfInterest> view = view_of_interest((*pixels)->camera, world);
+    if (!view) return tl::unexpected(view.error());
+    plan.options.pixels = PixelFeatureSize{*view, (*pixels)->pixels};
+  }
+  if (arguments.importance != "none") {
+    const Result<ViewOfInterest> view = view_of_interest(arguments.importance, world);
+    if (!view) return tl::unexpected(view.error());
+    plan.options.importance = *view;
+  }
+  return {};
 }
 
 Progress::Listener progress_listener(const SolveArguments& arguments) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,8 @@ struct SolveArguments {
   std::string time;   // empty: no deadline
   std::string progress = "auto";
   std::vector<std::string> links;  // who makes them, or how many at most
+  std::string importance = "none";
+  std::filesystem::path feature_sizes;  // rules; empty: none
   HierarchyKind hierarchy = HierarchyKind::size_grid;
   bool intra_cluster = SolveOptions{}.intra_cluster;
   int threads = 0;
@@ -39,6 +42,8 @@ struct SolvePlan {
   SolveGoals goals;
 };
 Result<SolvePlan> resolve(const SolveArguments& arguments);
+// Adds what needs the scene: views and rules.
+Result<void> complete(SolvePlan& plan, const SolveArguments& arguments, const World& world);
 Progress::Listener progress_listener(const SolveArguments& arguments);
 
 // Cancels the progress when --time has passed since a start.

@@ -1,6 +1,10 @@
 #include "visibility_arguments.h"
 
+#include <charconv>
+#include <cmath>
 #include <map>
+
+#include <fmt/format.h>
 
 #include "halflight/base/quantities.h"
 #include "halflight/hierarchy/surfaces.h"
@@ -19,8 +23,10 @@ Visibility make_visibility(const World& world, VisibilityMode mode) {
 void add_visibility_arguments(CLI::App& command, VisibilityArguments& arguments,
                               const std::string& otherwise) {
   command
-      .add_option("--feature-size", arguments.feature_size,
-                  "smallest shadow kept exact, e.g. 5cm; 0: all [scene diagonal / 200]")
+      .add_option(
+          "--feature-size", arguments.feature_size,
+          "smallest shadow kept exact, e.g. 5cm, or 12px@CAMERA when solving; 0: all [scene "
+          "diagonal / 200]")
       ->type_name("LEN");
   std::map<std::string, VisibilityMode> modes;
   for (const NamedVisibilityMode& m : kVisibilityModes) modes.emplace(m.name, m.mode);
@@ -45,8 +51,25 @@ void add_bounce_argument(CLI::App& command, VisibilityArguments& arguments) {
       ->default_str("exact");
 }
 
+Result<std::optional<PixelSizeWish>> pixel_size_wish(const std::string& feature_size) {
+  const std::size_t unit = feature_size.find("px@");
+  if (unit == std::string::npos) return std::optional<PixelSizeWish>();
+  PixelSizeWish wish;
+  const char* end = feature_size.data() + unit;
+  const auto [stop, error] = std::from_chars(feature_size.data(), end, wish.pixels);
+  wish.camera = feature_size.substr(unit + 3);
+  if (error != std::errc() || stop != end || !(wish.pixels > 0.f) || !std::isfinite(wish.pixels) ||
+      wish.camera.empty())
+    return input_error(fmt::format("--feature-size '{}' is not a number of pixels", feature_size),
+                       {}, "write it like 12px@CAMERA");
+  return wish;
+}
+
 Result<float> resolve_feature_size(const VisibilityArguments& arguments) {
   if (arguments.feature_size.empty()) return -1.f;
+  const Result<std::optional<PixelSizeWish>> wish = pixel_size_wish(arguments.feature_size);
+  if (!wish) return tl::unexpected(wish.error());
+  if (*wish) return -1.f;
   const Result<double> length = parse_length(arguments.feature_size);
   if (!length) return tl::unexpected(length.error());
   if (!(*length >= 0.0))

@@ -26,8 +26,15 @@ void add_visibility_arguments(CLI::App& command, VisibilityArguments& arguments,
 // For those who trace paths.
 void add_bounce_argument(CLI::App& command, VisibilityArguments& arguments);
 
-// Metres; negative when none was given.
+// Metres; negative when none was given, or one in pixels.
 Result<float> resolve_feature_size(const VisibilityArguments& arguments);
+
+// "12px@CAMERA": pixels of a view.
+struct PixelSizeWish {
+  float pixels = 0.f;
+  std::string camera;
+};
+Result<std::optional<PixelSizeWish>> pixel_size_wish(const std::string& feature_size);
 
 // What a path tracer asks instead of exact rays.
 class PathVisibility {

@@ -17,10 +17,24 @@ constexpr std::uint32_t kPaths = 32, kMorePaths = 4;
 constexpr int kRounds = 2;
 constexpr float kNoiseFloor = 0.35f;  // of the estimate, in units of the error that is aimed at
 
+// Where somebody looks.
+std::vector<ReadingPoint> scatter_over_view(const SolverState& state, std::size_t count) {
+  const Geometry& g = state.world->geometry;
+  std::vector<ReadingPoint> points;
+  const std::size_t step = std::max<std::size_t>(1, state.seen.size() / count);
+  for (std::size_t i = step / 2; i < state.seen.size(); i += step) {
+    const RayHit& hit = state.seen[i];
+    const Vec3 n = glm::normalize(g.scaled_normal(hit.triangle));
+    points.push_back({hit_position(g, hit), hit.front ? n : -n, hit.triangle});
+  }
+  return points;
+}
+
 // Points in gaps narrower than the feature size lie in shadows that nobody asked for.
 std::vector<ReadingPoint> scatter_in_the_open(const SolverState& state, std::size_t count) {
   const RayScene& rays = state.world->rays;
-  std::vector<ReadingPoint> points = scatter_points(state, count);
+  std::vector<ReadingPoint> points =
+      state.seen.empty() ? scatter_points(state, count) : scatter_over_view(state, count);
   std::erase_if(points, [&](const ReadingPoint& p) {
     return rays
         .closest_hit(rays.lift(p.position, p.normal), p.normal, state.options.feature_size, 0)

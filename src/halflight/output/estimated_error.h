@@ -13,9 +13,9 @@ namespace halflight {
 std::vector<ReadingPoint> scatter_points(const SolverState& state, std::size_t count);
 
 struct EstimatedError {
-  // RMS over the scene's area of the error of irradiance, relative to the scene's mean irradiance
-  // or, where there is more light, to that of the place: a few places inside lamps would outweigh
-  // all others.
+  // RMS over the scene's area, or over the picture that is important, of the error of irradiance,
+  // relative to the scene's mean irradiance or, where there is more light, to that of the place: a
+  // few places inside lamps would outweigh all others.
   float relative_rms = 0.f;
   float least = 0.f;  // errors below this drown in the noise of the paths
   float mean = 0.f;   // irradiance by the paths, W/m2

@@ -2,6 +2,7 @@
 
 #include "halflight/base/parallel.h"
 #include "halflight/rays/sampling.h"
+#include "halflight/solve/importance.h"
 #include "halflight/transport/outer_light.h"
 
 namespace halflight {
@@ -10,6 +11,7 @@ namespace {
 
 // A surface this much brighter than the scene's mean radiosity is read like an emitter.
 constexpr float kBright = 5.f;
+constexpr float kFinestEdge = 1e-3f;  // of the scene's diagonal
 constexpr float kErrorOfPlainReading = 0.05f;
 
 // Whole surfaces (none that needed cells) that reflect much more light than others.
@@ -56,6 +58,12 @@ ReadOptions with_feature_size(ReadOptions options, float feature_size) {
 }
 
 }  // namespace
+
+float finest_mesh_edge(const SolverState& state) {
+  const float least = kFinestEdge * state.world->geometry.bounds.diagonal();
+  const float smallest = std::max(state.feature_sizes[state.tree.root()], least);
+  return 0.5f * std::min(state.options.feature_size, smallest);
+}
 
 ReadOptions sensor_reading(const SolverState& state) {
   ReadOptions options;
@@ -108,13 +116,23 @@ Reading SolutionReader::read(const ReadingPoint& point) const {
   return reading;
 }
 
-Reading SolutionReader::of_cell(const ReadingPoint& point) const {
-  if (!point.triangle.valid()) return read(point);
+ElementId SolutionReader::leaf_at(const ReadingPoint& point) const {
   RayHit there;
   there.triangle = point.triangle;
   there.front =
       glm::dot(point.normal, state_->world->geometry.scaled_normal(point.triangle)) >= 0.f;
-  const ElementId leaf = state_->tree.find_leaf(state_->surfaces->side_hit(there), point.position);
+  return state_->tree.find_leaf(state_->surfaces->side_hit(there), point.position);
+}
+
+bool SolutionReader::matters_to_nobody(const ReadingPoint& point) const {
+  if (state_->importance.empty() || !point.triangle.valid()) return false;
+  const ElementId leaf = leaf_at(point);
+  return leaf.valid() && state_->importance[leaf] < kNegligibleImportance;
+}
+
+Reading SolutionReader::of_cell(const ReadingPoint& point) const {
+  if (!point.triangle.valid()) return read(point);
+  const ElementId leaf = leaf_at(point);
   if (!leaf.valid()) return {};
   const Rgb direct = state_->given_light[leaf];
   return {direct, glm::max(irradiance_.at(leaf, point.position) - direct, Rgb(0.f))};
@@ -124,7 +142,8 @@ std::vector<Reading> SolutionReader::operator()(std::span<const ReadingPoint> po
                                                 const Progress& progress) const {
   std::vector<Reading> readings(points.size());
   parallel_for(points.size(), 16, [&](std::size_t i) {
-    readings[i] = progress.cancelled() ? of_cell(points[i]) : read(points[i]);
+    const bool at_once = progress.cancelled() || matters_to_nobody(points[i]);
+    readings[i] = at_once ? of_cell(points[i]) : read(points[i]);
   });
   return readings;
 }

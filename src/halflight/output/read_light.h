@@ -25,6 +25,9 @@ inline constexpr ReadOptions kPixelReading{
     .gather_rays = 32,
     .direct = {.shadow_rays = 8, .penumbra_rays = 24, .largest_group_share = 0.03f}};
 
+// Length of edges that a lit mesh need not split: half the smallest feature size of any place.
+float finest_mesh_edge(const SolverState& state);
+
 // For sensors: as many rays as the error that is aimed at asks for.
 ReadOptions sensor_reading(const SolverState& state);
 
@@ -48,6 +51,9 @@ class SolutionReader {
   Rgb reflected_radiosity(const RayHit& hit) const;
 
  private:
+  // Of a point on a triangle.
+  ElementId leaf_at(const ReadingPoint& point) const;
+  bool matters_to_nobody(const ReadingPoint& point) const;
   // Light reflected at least once.
   Rgb gather(const Vec3& x, const Vec3& n) const;
 

@@ -35,10 +35,10 @@ bool is_buried(const SolverState& state, const Vec3& x, const Vec3& n, std::uint
 GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uint64_t stream) {
   const EmitterTree* emitters = state.sampled[cell] != 0 ? state.emitters.get() : nullptr;
   const Vec3 n = state.tree.normal(cell);
-  const float s = state.options.feature_size;
+  const float s = state.feature_sizes[cell];
   DirectLightOptions options = kCellDirectLight;
   options.feature_size = s;
-  const bool whole_and_small = state.tree.cell_size(cell) < 2.f * smallest_cell(state);
+  const bool whole_and_small = state.tree.cell_size(cell) < 2.f * smallest_cell(state, cell);
   const std::uint32_t samples = whole_and_small ? 1 : kPointsOfCell;
   GivenLight result;
   float sum = 0.f, squares = 0.f;
@@ -68,9 +68,12 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uin
 
 }  // namespace
 
-float smallest_cell(const SolverState& state) {
-  const float finest = kFinestCell * state.world->geometry.bounds.diagonal();
-  return std::max(0.5f * state.options.feature_size, finest);
+float finest_cell(const SolverState& state) {
+  return kFinestCell * state.world->geometry.bounds.diagonal();
+}
+
+float smallest_cell(const SolverState& state, ElementId cell) {
+  return std::max(0.5f * state.feature_sizes[cell], finest_cell(state));
 }
 
 void evaluate_material(SolverState& state, ElementId cell) {
@@ -110,6 +113,8 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   state.radiosity.resize(n);
   state.tolerance.resize(n);
   state.sampled.resize(n, 0);
+  state.feature_sizes.resize(n);
+  if (!state.importance.empty()) state.importance.resize(n);
   parallel_for(split_cells.size(), 64, [&](std::size_t i) {
     const ElementId parent = split_cells[i];
     for (const ElementId child : state.tree[parent].children()) {
@@ -122,6 +127,8 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
       state.irradiance[child] = state.irradiance[parent];
       state.tolerance[child] = state.tolerance[parent];
       state.sampled[child] = state.sampled[parent];
+      state.feature_sizes[child] = state.feature_size_rules->of_cell(state.tree[child]);
+      if (!state.importance.empty()) state.importance[child] = state.importance[parent];
       state.radiosity[child] =
           state.exitance[child] + state.reflectance[child] * state.irradiance[child];
     }
@@ -156,8 +163,9 @@ void give_light_to_clusters(SolverState& state, const EmitterTree& emitters,
     if (!tree[receiver].is_cluster()) return;
     // Too near for one light on all: its cells are lit one by one.
     if (max_component(state.exitance[receiver]) > 0.f) return;
-    const DirectLight light =
-        sample_direct_light(tree, *state.visibility, emitters, receiver, options);
+    SampledLinkOptions own = options;
+    own.feature_size = state.feature_sizes[receiver];
+    const DirectLight light = sample_direct_light(tree, *state.visibility, emitters, receiver, own);
     if (options.inside && options.inside->knows(receiver)) {
       const auto items = options.inside->items(receiver);
       const std::vector<Rgb> of_emitters = hand_out(*options.inside, receiver, light.of_emitters);
@@ -196,7 +204,7 @@ void update_given_light(SolverState& state, float irradiance_threshold) {
     parallel_for(open.size(), 16, [&](std::size_t i) {
       const ElementId e = open[i];
       // As with links: what is kept had no say in whether to split (transport/refine.cpp).
-      if (state.tree.cell_size(e) > 2.f * smallest_cell(state)) {
+      if (state.tree.cell_size(e) > 2.f * smallest_cell(state, e)) {
         const GivenLight pilot = sample_given_light(state, e, kPilot);
         const float error = pilot.deviation * std::sqrt(state.tree[e].area / scene_area);
         uneven[i] = error > state.tolerance[e] * irradiance_threshold;

@@ -9,8 +9,10 @@
 
 namespace halflight {
 
-// Cells are not split below this size, metres: half the feature size.
-float smallest_cell(const SolverState& state);
+// A cell is not split below this size, metres: half its feature size.
+// Of all cells, whatever the feature size.
+float finest_cell(const SolverState& state);
+float smallest_cell(const SolverState& state, ElementId cell);
 
 // Mean reflectance and exitance of a cell, textures sampled over its area.
 void evaluate_material(SolverState& state, ElementId cell);

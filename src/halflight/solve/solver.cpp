@@ -10,6 +10,7 @@
 #include "halflight/base/parallel.h"
 #include "halflight/hierarchy/live_sides.h"
 #include "halflight/solve/cells.h"
+#include "halflight/solve/importance.h"
 #include "halflight/solve/sweep.h"
 #include "halflight/transport/emitter_tree.h"
 #include "halflight/transport/outer_light.h"
@@ -26,8 +27,7 @@ constexpr float kThresholdPerError = 0.02f;
 constexpr float kThresholdRatio = 4.f;  // between levels
 // Of the first iteration to the first level, when iterations are to be short.
 constexpr float kFirstThreshold = 16.f;
-constexpr float kBlindCells = 8.f;    // RefineOptions::largest_blind_cell in feature sizes
-constexpr float kClusterSizes = 1.f;  // SampledLinkOptions::largest_cluster in feature sizes
+constexpr float kBlindCells = 8.f;  // RefineOptions::largest_blind_cell in feature sizes
 constexpr float kLeastTolerance = 0.15f;
 constexpr float kSweepTolerance = 2e-4f;
 constexpr int kMostSweeps = 60;
@@ -103,6 +103,11 @@ void begin_level(SolverState& state) {
   if (first) update_given_light(state, kInfinity);
   const float mean = first ? first_guess_of_irradiance(state) : mean_irradiance(state);
   if (!first) update_tolerance(state, mean);
+  if (!first && state.options.importance) {
+    state.importance = solve_importance(state, state.seen);
+    for (std::size_t i = 0; i < state.tree.size(); ++i)
+      state.tolerance[ElementId(i)] /= std::sqrt(state.importance[ElementId(i)]);
+  }
   const int levels_left = state.options.levels - 1 - state.schedule.level;
   state.schedule.irradiance_threshold =
       kThresholdPerError * state.options.error * mean *
@@ -194,10 +199,9 @@ void refine_pairs(SolverState& state, std::vector<ElementPair> pairs, bool shape
                   IterationRecord& record) {
   RefineOptions options;
   options.irradiance_threshold = record.irradiance_threshold;
-  options.feature_size = state.options.feature_size;
-  options.smallest_cell = smallest_cell(state);
-  options.smallest_cluster = kClusterSizes * state.options.feature_size;
-  options.largest_blind_cell = 2.f * kBlindCells * smallest_cell(state);
+  options.feature_sizes = &state.feature_sizes;
+  options.finest_cell = finest_cell(state);
+  options.largest_blind_cell = 2.f * kBlindCells;
   options.most_links = state.options.most_links;
   options.shape_only = shape_only;
   options.inside = state.inside.get();
@@ -250,8 +254,6 @@ void shape_elements(SolverState& state, std::size_t k, const Progress& progress,
 
 SampledLinkOptions sampled_link_options(const SolverState& state) {
   SampledLinkOptions options;
-  options.feature_size = state.options.feature_size;
-  options.largest_cluster = kClusterSizes * state.options.feature_size;
   options.inside = state.inside.get();
   const float more =
       std::clamp(kErrorOfPlainSampling / state.options.error, 1.f, kMostOversampling);
@@ -299,18 +301,17 @@ double share_done(const SolverState& state) {
 // Gives sampled links to the next k receivers.
 void sample_receivers(SolverState& state, std::size_t k, IterationRecord& record) {
   std::vector<ElementId>& waiting = state.schedule.receivers;
-  const std::size_t n = std::min(k, waiting.size());
-  const std::vector<ElementId> receivers(waiting.end() - static_cast<std::ptrdiff_t>(n),
-                                         waiting.end());
-  waiting.resize(waiting.size() - n);
+  const auto first = waiting.end() - static_cast<std::ptrdiff_t>(std::min(k, waiting.size()));
+  const std::vector<ElementId> receivers(first, waiting.end());
+  waiting.erase(first, waiting.end());
   const SampledLinkOptions options = sampled_link_options(state);
   hand_over(state, receivers);
   give_light_to_clusters(state, *state.emitters, receivers, options);
   update_given_light(state, record.irradiance_threshold);
   state.sampled_links.append(
       sample_links(state.tree, state.world->rays, state.opacity,
-                   choose_receivers(state.tree, receivers, options.largest_cluster), options));
-  record.refined += n;
+                   choose_receivers(state.tree, receivers, state.feature_sizes), options));
+  record.refined += receivers.size();
 }
 
 // Cells that were split since an earlier round have kept their links for those of their parts that
@@ -375,8 +376,10 @@ void begin_stage(SolverState& state, bool in_short_iterations) {
       state.emitters =
           std::make_shared<EmitterTree>(*state.visibility, find_emitters(*state.world));
     ++todo.round;
-    todo.receivers = choose_receivers(state.tree, {state.tree.root()},
-                                      sampled_link_options(state).largest_cluster);
+    todo.receivers = choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes);
+    if (!state.importance.empty())
+      std::erase_if(todo.receivers,
+                    [&](ElementId e) { return state.importance[e] < kNegligibleImportance; });
     todo.receiver_total = todo.receivers.size();
     if (in_short_iterations) shuffle_blocks(todo.receivers);
   }
@@ -398,6 +401,11 @@ SolverState make_state(const std::shared_ptr<const World>& world, const SolveOpt
     state.options.feature_size = world->geometry.bounds.diagonal() / 200.f;
   state.visibility = choose_visibility(world, *surfaces, clusters, state.options);
 
+  state.feature_size_rules = std::make_shared<const FeatureSizes>(
+      *world, *surfaces, state.options.feature_size, options.feature_size_rules, options.pixels);
+  state.feature_sizes = state.feature_size_rules->of_elements(state.tree);
+  if (options.importance) state.seen = seen_surfaces(*world, *options.importance);
+
   const std::size_t n = state.tree.size();
   state.opacity.resize(n, 1.f);
   state.reflectance.resize(n);
@@ -415,8 +423,7 @@ SolverState make_state(const std::shared_ptr<const World>& world, const SolveOpt
   if (state.options.intra_cluster)
     state.inside = std::make_shared<const ClusterVisibility>(
         state.tree, state.opacity,
-        choose_receivers(state.tree, {state.tree.root()},
-                         kClusterSizes * state.options.feature_size));
+        choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes));
   pull(state);
   state.schedule.pairs = {{state.tree.root(), state.tree.root()}};
   if (levels_of_links(state.options) == 0) state.schedule.stage = Stage::shape;

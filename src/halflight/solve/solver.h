@@ -5,12 +5,14 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "halflight/base/progress.h"
 #include "halflight/hierarchy/build_hierarchy.h"
 #include "halflight/hierarchy/elements.h"
 #include "halflight/rays/world.h"
+#include "halflight/solve/feature_sizes.h"
 #include "halflight/solve/schedule.h"
 #include "halflight/transport/cluster_visibility.h"
 #include "halflight/transport/emitter_tree.h"
@@ -29,6 +31,9 @@ struct SolveOptions {
   // s, metres: smallest shadow kept exact. Negative: scene diagonal / 200. 0: all shadows are
   // exact, and only the error decides how fine elements get.
   float feature_size = -1.f;
+  std::vector<FeatureSizeRule> feature_size_rules{};  // for parts of the scene
+  std::optional<PixelFeatureSize> pixels{};    // instead of feature_size, where no rule holds
+  std::optional<ViewOfInterest> importance{};  // light elsewhere only counts for what it does there
   // Multires gives way to exact rays where a pilot says that clusters would save nothing; the
   // state's visibility tells what is used.
   VisibilityMode visibility = VisibilityMode::multires;
@@ -46,11 +51,16 @@ struct SolverState {
   std::shared_ptr<const World> world;
   std::shared_ptr<const Surfaces> surfaces;
   std::shared_ptr<const Visibility> visibility{};
+  std::shared_ptr<const FeatureSizes> feature_size_rules{};
   ElementTree tree;
   SolveOptions options;  // resolved: no zeros that stand for defaults
   // Inside clusters that receive and send as one; null: not asked for.
   std::shared_ptr<const ClusterVisibility> inside{};
 
+  IdVector<ElementId, float> feature_sizes{};  // s of each element, metres
+  // Of errors at each element (importance.h); empty: all count alike.
+  IdVector<ElementId, float> importance{};
+  std::vector<RayHit> seen{};              // in the view that is important
   IdVector<ElementId, float> opacity{};    // of cells: share of the light that they stop
   IdVector<ElementId, Rgb> reflectance{};  // of cells, of all light that falls on them
   IdVector<ElementId, Rgb> exitance{};     // pi L of cells, times their opacity

@@ -67,10 +67,10 @@ class Oracle {
       return verdict;
     }
 
-    TransferEstimate pilot = estimate_transfer(scene_, r, s, kSamples, kPilot);
+    TransferEstimate pilot = estimate_transfer(received_by(r), r, s, kSamples, kPilot);
     // A few samples on a large cell that agree may all have missed a shadow, or the light.
     if (is_blind(r) && scale * pilot.deviation <= threshold && scale * pilot.unoccluded > threshold)
-      pilot = estimate_transfer(scene_, r, s, kBlindSamples, kPilot);
+      pilot = estimate_transfer(received_by(r), r, s, kBlindSamples, kPilot);
     // What n samples missed may still be one part in n + 1 (rule of succession).
     const float error = std::max(pilot.deviation, pilot.unoccluded / (kBlindSamples + 1)) +
                         kUnseenVariation * bounds.kernel_variation * pilot.weight;
@@ -88,9 +88,10 @@ class Oracle {
     if (options_.shape_only) return {};
     if (accept_all_) samples = 1;
     const bool cells = !scene_.tree[r].is_cluster() && !scene_.tree[s].is_cluster();
-    const TransferEstimate t = bounds.touching && !cells
-                                   ? estimate_touching_transfer(scene_, r, s, samples, kFinal)
-                                   : estimate_transfer(scene_, r, s, samples, kFinal);
+    const TransferEstimate t =
+        bounds.touching && !cells
+            ? estimate_touching_transfer(received_by(r), r, s, samples, kFinal)
+            : estimate_transfer(received_by(r), r, s, samples, kFinal);
     Verdict verdict;
     verdict.kind = Verdict::Kind::accept;
     verdict.link.source = s;
@@ -103,15 +104,23 @@ class Oracle {
     return verdict;
   }
 
+  TransferScene received_by(ElementId r) const {
+    TransferScene scene = scene_;
+    scene.feature_size = (*options_.feature_sizes)[r];
+    return scene;
+  }
+
   bool is_blind(ElementId r) const {
-    return !scene_.tree[r].is_cluster() && scene_.tree.cell_size(r) > options_.largest_blind_cell;
+    return !scene_.tree[r].is_cluster() &&
+           scene_.tree.cell_size(r) > options_.largest_blind_cell * options_.smallest_cell(r);
   }
 
   bool can_split(ElementId e) const {
     const Element& element = scene_.tree[e];
     if (element.is_cluster())
-      return !element.is_leaf() && element.diameter() > options_.smallest_cluster;
-    return !element.is_leaf() || scene_.tree.cell_size(e) > 2.f * options_.smallest_cell;
+      return !element.is_leaf() &&
+             element.diameter() > options_.smallest_cluster * (*options_.feature_sizes)[e];
+    return !element.is_leaf() || scene_.tree.cell_size(e) > 2.f * options_.smallest_cell(e);
   }
 
   // The larger end first; `accept` when neither end can be split.
@@ -175,8 +184,7 @@ void refine(ElementTree& tree, const Visibility& visibility,
     pairs.resize(pairs.size() - n);
     const bool accept_all = links.size() > options.most_links || progress.cancelled();
 
-    const TransferScene scene{tree,      visibility, options.feature_size,
-                              radiosity, opacity,    options.inside};
+    const TransferScene scene{tree, visibility, 0.f, radiosity, opacity, options.inside};
     const Oracle oracle(scene, options, tolerance, accept_all);
     verdicts.assign(n, {});
     parallel_for(n, 64, [&](std::size_t i) {

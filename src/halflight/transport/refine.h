@@ -1,6 +1,7 @@
 // Refinement: from a list of element pairs to links whose estimated error is small enough.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -18,14 +19,20 @@ struct RefineOptions {
   // tolerance: independent errors add in the square, weighted by the area they fall on, so this
   // equalises what links add to the RMS error.
   float irradiance_threshold = 0.f;
-  float feature_size = 0.f;  // of shadows that count
-  // Cells are not split below this size: half the feature size (the feature gate).
-  float smallest_cell = 0.f;
-  // Clusters are not opened below this diameter: what is inside is smaller than any shadow asked
-  // for, and receives and sends as one.
-  float smallest_cluster = 0.f;
-  // Cells larger than this are split whatever their samples say, as samples can miss a shadow.
+  // s of each element: the smallest shadow that counts there, metres.
+  const IdVector<ElementId, float>* feature_sizes = nullptr;
+  // Cells are not split below half their feature size (the feature gate), nor below this.
+  float finest_cell = 0.f;
+  // Clusters are not opened below this many feature sizes: what is inside is smaller than any
+  // shadow asked for, and receives and sends as one.
+  float smallest_cluster = 1.f;
+  // Cells larger than this many of the smallest ones are split whatever their samples say, as
+  // samples can miss a shadow.
   float largest_blind_cell = kInfinity;
+
+  float smallest_cell(ElementId cell) const {
+    return std::max(0.5f * (*feature_sizes)[cell], finest_cell);
+  }
   // Only the shape of the elements is wanted: pairs are judged, cells are split, no link is made.
   bool shape_only = false;
   // Inside clusters that exchange light as one; null: not known.

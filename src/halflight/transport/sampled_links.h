@@ -20,19 +20,17 @@ struct SampledLinkOptions {
   int rays_per_cell = 64;
   int rays_per_cluster = 128;
   int shadow_rays_per_cluster = 32;  // to emitters, as many to the sky, one to each punctual light
-  // Clusters up to this diameter receive as one, with directional irradiance (metres).
-  float largest_cluster = 0.f;
-  float feature_size = 0.f;  // of shadows in direct light that count; 0: all
+  float feature_size = 0.f;          // of shadows in direct light that count; 0: all
   // Where it knows a receiving cluster, a link's weight counts where the cluster is seen from the
   // link's direction, or in the hidden rest when the source lies inside the cluster. Null: on all
   // that faces the direction.
   const ClusterVisibility* inside = nullptr;
 };
 
-// The cut of the tree below some elements that receives: small clusters, and leaf cells outside
-// them.
+// The cut of the tree below some elements that receives: clusters up to their largest diameter
+// (metres), with directional irradiance, and leaf cells outside them.
 std::vector<ElementId> choose_receivers(const ElementTree& tree, std::vector<ElementId> below,
-                                        float largest_cluster);
+                                        const IdVector<ElementId, float>& largest_diameter);
 
 // A ray stops in a cell in proportion to the cell's opacity, by which radiosity is already reduced:
 // the weight is divided by it. In receiver order, each receiver's links in ray order:

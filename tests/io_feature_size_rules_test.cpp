@@ -1,0 +1,55 @@
+#include <gtest/gtest.h>
+
+#include "halflight/io/feature_size_rules.h"
+#include "temporary_folder.h"
+
+namespace halflight {
+namespace {
+
+class FeatureSizeRules : public ::testing::Test {
+ protected:
+  auto read(const std::string& text) {
+    folder_.write("rules.toml", text);
+    return read_feature_size_rules(folder_.path() / "rules.toml");
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(FeatureSizeRules, AreReadInOrder) {
+  const auto rules = read(
+      "[[rule]]\nmaterial = \"Floor*\"\nfeature-size = \"2cm\"\n"
+      "[[rule]]\nnode = \"Desk\"\nmaterial = \"Wood\"\nfeature-size = 0.5\n");
+  ASSERT_TRUE(rules) << rules.error().line();
+  ASSERT_EQ(rules->size(), 2u);
+  EXPECT_EQ((*rules)[0].material, "Floor*");
+  EXPECT_EQ((*rules)[0].node, "");
+  EXPECT_FLOAT_EQ((*rules)[0].feature_size, 0.02f);
+  EXPECT_EQ((*rules)[1].node, "Desk");
+  EXPECT_FLOAT_EQ((*rules)[1].feature_size, 0.5f);
+}
+
+TEST_F(FeatureSizeRules, NonsenseIsNamedWithItsLine) {
+  for (const auto& [text, what] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"rule = 3\n", "line 1"},
+           {"[[rule]]\nmaterial = \"a\"\n", "no feature-size"},
+           {"[[rule]]\nfeature-size = \"2cm\"\n", "neither material nor node"},
+           {"[[rule]]\nmaterial = \"a\"\nfeature-size = \"2 furlongs\"\n", "line 3"},
+           {"[[rule]]\nmaterial = \"a\"\nfeature-size = -1\n", "line 3"},
+           {"[[rule]]\nmaterial = \"a\"\nfeature-size = nan\n", "line 3"},
+           {"[[rule]]\nmaterial = 4\nfeature-size = 1\n", "line 2"},
+           {"[[rule]]\nmaterail = \"a\"\nfeature-size = 1\n", "materail"},
+           {"[[rule\n", "line 1"},
+           {"\xff\xfe", "line 1"}}) {
+    const auto rules = read(text);
+    ASSERT_FALSE(rules) << text;
+    EXPECT_NE(rules.error().line().find(what), std::string::npos) << rules.error().line();
+    EXPECT_NE(rules.error().line().find("rules.toml"), std::string::npos) << rules.error().line();
+  }
+}
+
+TEST_F(FeatureSizeRules, MissingFileIsAnError) {
+  EXPECT_FALSE(read_feature_size_rules(folder_.path() / "none.toml"));
+}
+
+}  // namespace
+}  // namespace halflight

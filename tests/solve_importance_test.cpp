@@ -1,0 +1,137 @@
+// Feature sizes of parts of the scene and of views, and importance.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "halflight/rays/path_tracer.h"
+#include "halflight/scene/procedural/doorway.h"
+#include "halflight/solve/importance.h"
+#include "solved_scene.h"
+
+namespace halflight {
+namespace {
+
+// The room with the light lies at x < 0, the dim one beyond the doorway.
+ViewOfInterest view_of(const World& world, bool bright_room) {
+  const Vec3 centre = world.geometry.bounds.center();
+  ViewOfInterest view{PlacedCamera(), 320, 180};
+  const float side = bright_room ? -1.f : 1.f;
+  view.camera.position = centre + Vec3(side * 0.2f * world.geometry.bounds.diagonal(), 0.f, 0.f);
+  view.camera.forward = Vec3(side, 0.f, 0.f);
+  return view;
+}
+
+TEST(FeatureSizes, LastRuleThatMatchesHolds) {
+  const auto world = make_world(doorway_scene());
+  const Surfaces surfaces = build_surfaces(world->geometry);
+  const std::string name = world->scene.materials[world->geometry.materials[TriangleId(0)]].name;
+  const std::vector<FeatureSizeRule> rules{{"*", "", 0.3f}, {name, "", 0.02f}};
+  const FeatureSizes sizes(*world, surfaces, 0.1f, rules, std::nullopt);
+  std::size_t own = 0;
+  for (std::size_t i = 0; i < surfaces.surfaces.size(); ++i) {
+    const TriangleId t = surfaces.triangles[surfaces[SurfaceId(i)].first_triangle];
+    const bool same = world->scene.materials[world->geometry.materials[t]].name == name;
+    Element cell;
+    cell.side = side_of(SurfaceId(i), false);
+    EXPECT_FLOAT_EQ(sizes.of_cell(cell), same ? 0.02f : 0.3f);
+    own += same;
+  }
+  EXPECT_GT(own, 0u);
+  EXPECT_LT(own, surfaces.surfaces.size());
+}
+
+TEST(FeatureSizes, RuleThatMatchesNothingIsAnError) {
+  const auto world = make_world(doorway_scene());
+  EXPECT_TRUE(check_rules({{"*", "", 0.1f}}, *world, "rules.toml"));
+  const auto missing = check_rules({{"Unobtainium", "", 0.1f}}, *world, "rules.toml");
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().line().find("Unobtainium"), std::string::npos);
+}
+
+TEST(FeatureSizes, PixelsGrowWithDistance) {
+  const auto world = make_world(doorway_scene());
+  const Surfaces surfaces = build_surfaces(world->geometry);
+  PixelFeatureSize pixels{view_of(*world, true), 4.f};
+  const FeatureSizes sizes(*world, surfaces, 0.1f, {}, pixels);
+  Element cell;
+  cell.side = side_of(SurfaceId(0), false);
+  const auto at = [&](float distance) {
+    cell.box = {};
+    cell.box.extend(pixels.view.camera.position + distance * pixels.view.camera.forward);
+    return sizes.of_cell(cell);
+  };
+  // A pixel of 180 in a field of view of 0.8 radians.
+  const float pixel = 2.f * std::tan(0.4f) / 180.f;
+  EXPECT_NEAR(at(1.f), 4.f * pixel, 1e-5f);
+  EXPECT_NEAR(at(5.f), 20.f * pixel, 1e-5f);
+}
+
+TEST(FeatureSizes, RefineWhereTheyAreSmall) {
+  SolveOptions options = testing::options_of(LinkMaker::sampled, 0.4f);
+  const SolverState plain = testing::solve(doorway_scene(), options);
+  const auto world = make_world(doorway_scene());
+  const MaterialId floor = world->geometry.materials[TriangleId(0)];
+  options.feature_size_rules = {{world->scene.materials[floor].name, "", 0.05f}};
+  const SolverState ruled = testing::solve(doorway_scene(), options);
+  const auto smallest = [&](const SolverState& state, bool on_it) {
+    float size = kInfinity;
+    for (std::size_t i = 0; i < state.tree.size(); ++i) {
+      const ElementId e(i);
+      if (state.tree[e].is_cluster()) continue;
+      if ((state.tree.surfaces()[state.tree[e].side].material == floor) == on_it)
+        size = std::min(size, state.tree.cell_size(e));
+    }
+    return size;
+  };
+  EXPECT_LT(smallest(ruled, true), 0.6f * smallest(plain, true));
+  EXPECT_GT(ruled.tree.size(), plain.tree.size());
+}
+
+TEST(Importance, SeesThroughReflections) {
+  SolverState state =
+      make_state(make_world(doorway_scene()), testing::options_of(LinkMaker::sampled, 0.2f));
+  advance(state, Progress());
+  advance(state, Progress());
+  const auto seen = seen_surfaces(*state.world, view_of(*state.world, false));
+  ASSERT_GT(seen.size(), 10'000u);
+  const auto importance = solve_importance(state, seen);
+  float least = 1.f, most = 0.f;
+  for (const float i : importance) {
+    least = std::min(least, i);
+    most = std::max(most, i);
+  }
+  EXPECT_GE(least, kLeastImportance);
+  EXPECT_FLOAT_EQ(most, 1.f);
+  for (const RayHit& hit : seen) EXPECT_FLOAT_EQ(importance[state.tree.leaf_hit(hit)], 1.f);
+  // The bright room is out of sight, yet its light comes through the doorway.
+  std::size_t between = 0;
+  for (const float i : importance) between += i > 2.f * kLeastImportance && i < 0.9f;
+  EXPECT_GT(between, 100u);
+}
+
+TEST(Importance, KeepsTheViewForLess) {
+  SolveOptions options = testing::options_of(LinkMaker::sampled, 0.1f);
+  const auto world = make_world(doorway_scene());
+  const SolverState whole = testing::solve(world, options);
+  options.importance = view_of(*world, true);
+  const SolverState seen = testing::solve(world, options);
+  EXPECT_LT(seen.sampled_links.size(), 0.8f * whole.sampled_links.size());
+  // Points of the view, read in both.
+  std::vector<ReadingPoint> points;
+  const Geometry& g = world->geometry;
+  for (std::size_t i = 0; i < seen.seen.size(); i += seen.seen.size() / 200) {
+    const RayHit& hit = seen.seen[i];
+    const Vec3 n = glm::normalize(g.scaled_normal(hit.triangle));
+    points.push_back({hit_position(g, hit), hit.front ? n : -n, hit.triangle});
+  }
+  const auto a = testing::read_irradiance(whole, points),
+             b = testing::read_irradiance(seen, points);
+  EXPECT_NEAR(testing::mean(b) / testing::mean(a), 1.f, 0.02f);
+  float worst = 0.f;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    worst = std::max(worst, std::abs(a[i] - b[i]) / std::max(a[i], testing::mean(a)));
+  EXPECT_LT(worst, 0.1f);
+}
+
+}  // namespace
+}  // namespace halflight
