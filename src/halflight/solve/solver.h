@@ -80,7 +80,14 @@ struct SolverState {
   std::size_t link_total() const { return links.size() + sampled_links.size(); }
 };
 
+// Options with defaults put in for what is left open.
+SolveOptions resolved(SolveOptions options, const World& world);
+
 SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options);
+// The same where it is known which sides can see light (hierarchy/live_sides.h).
+SolverState make_state(const std::shared_ptr<const World>& world,
+                       const std::shared_ptr<const Surfaces>& surfaces,
+                       const IdVector<SideId, std::uint8_t>& live, const SolveOptions& options);
 
 // What one iteration may cost. Without limits an iteration goes to the next level of the threshold.
 struct IterationBudget {
