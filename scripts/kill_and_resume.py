@@ -25,8 +25,10 @@ def main():
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--binary", default=str(ROOT / "build/release/bin/halflight"))
-    parser.add_argument("options", nargs="*", help="of solve, after --")
-    arguments = parser.parse_args()
+    words = sys.argv[1:]
+    end = words.index("--") if "--" in words else len(words)
+    arguments = parser.parse_args(words[:end])
+    arguments.options = words[end + 1:]
     random.seed(arguments.seed)
     with tempfile.TemporaryDirectory() as folder:
         return run(arguments, pathlib.Path(folder))

@@ -55,9 +55,17 @@ TEST_F(CheckpointCommand, KilledAndResumedGivesTheSameBytes) {
 }
 
 TEST_F(CheckpointCommand, InterruptedAndResumedGivesTheSameBytes) {
+  const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(run(solve("whole")), 0) << text("err");
-  EXPECT_EQ(run_and_signal(solve("part"), SIGINT, std::chrono::milliseconds(120)), 3);
-  ASSERT_EQ(run(solve("part") + " --time 0.05s --resume"), 4) << text("err");
+  auto delay = std::chrono::duration_cast<std::chrono::milliseconds>(
+      std::chrono::steady_clock::now() - start);
+  // Later runs may be faster than the first.
+  int status = 0;
+  for (int attempt = 0; attempt < 8 && status != 3; ++attempt) {
+    delay = delay * 3 / 4;
+    status = run_and_signal(solve("part"), SIGINT, delay);
+  }
+  ASSERT_EQ(status, 3);
   ASSERT_EQ(run(solve("part") + " --resume"), 0) << text("err");
   EXPECT_EQ(text("part.txt"), text("whole.txt"));
   EXPECT_TRUE(text("part.ckpt") == text("whole.ckpt"));
@@ -109,6 +117,37 @@ TEST_F(CheckpointCommand, MovesTogetherWithItsScene) {
   EXPECT_THAT(one_line_error("sample alone --points sensors.txt"), HasSubstr("--scene"));
   ASSERT_EQ(run("sample alone --scene there/room.obj --points sensors.txt"), 0) << text("err");
   EXPECT_EQ(text("out"), text("solved.txt"));
+}
+
+TEST_F(CheckpointCommand, MixDimsAndRecolours) {
+  const std::string common =
+      "solve room.obj --feature-size 50cm --sky 0.2,0.2,0.2 --progress none ";
+  ASSERT_EQ(run(common + "--checkpoint c --light-groups --points sensors.txt --points-out s.txt"),
+            0)
+      << text("err");
+  ASSERT_EQ(run("sample c --points sensors.txt"), 0) << text("err");
+  EXPECT_EQ(text("out"), text("s.txt"));
+  ASSERT_EQ(run("mix c --points sensors.txt"), 0) << text("err");
+  EXPECT_EQ(text("out"), text("s.txt"));
+  ASSERT_EQ(run("mix c --group lamp=0.5 --group sky=0 --points sensors.txt -o lit.glb"), 0)
+      << text("err");
+  const auto whole = irradiance_of(text("s.txt")), half = irradiance_of(text("out"));
+  ASSERT_EQ(whole.size(), half.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_NEAR(half[i] / whole[i], 0.5f, 0.005f);
+  EXPECT_GT(text("lit.glb").size(), 1000u);
+  ASSERT_EQ(run("mix c --group lamp=1,0,0 --points sensors.txt"), 0);
+  const auto red = irradiance_of(text("out"));
+  for (std::size_t i = 0; i < red.size(); i += 3) {
+    EXPECT_GT(red[i], 0.f);
+    EXPECT_EQ(red[i + 1], 0.f);
+  }
+  EXPECT_THAT(one_line_error("mix c --group bulb=1"), HasSubstr("the checkpoint has lamp, sky"));
+  for (const char* factor : {"lamp", "lamp=", "lamp=-1", "lamp=1,2", "lamp=nan", "lamp=1,2,3,4"})
+    EXPECT_THAT(one_line_error(std::string("mix c --group ") + factor), HasSubstr("--group"));
+  EXPECT_THAT(one_line_error(common + "--checkpoint c --resume"), HasSubstr("light groups"));
+  ASSERT_EQ(run(common + "--checkpoint c --light-groups --resume"), 0) << text("err");
+  ASSERT_EQ(run("solve room.obj --feature-size 1 --progress none --checkpoint d"), 0);
+  EXPECT_THAT(one_line_error("mix d --group lamp=1"), HasSubstr("no light groups"));
 }
 
 TEST_F(CheckpointCommand, SaysWhyItCannotGoOn) {

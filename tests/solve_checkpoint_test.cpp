@@ -244,6 +244,7 @@ TEST(Settings, AreTheSameAfterBeingText) {
   options.error = 1.f / 3.f;
   options.links = LinkMaker::refined;
   options.hierarchy = HierarchyKind::goldsmith_salmon;
+  options.intra_cluster = false;
   options.levels = 5;
   options.most_links = 123;
   const auto read = parse_settings(to_text(options));

@@ -20,6 +20,9 @@ void add_checkpoint_arguments(CLI::App& command, CheckpointArguments& arguments)
 // --scene alone.
 CLI::Option* add_scene_of_checkpoint(CLI::App& command, std::filesystem::path& scene);
 
+// The solution over a world made from the checkpoint's scene, with light groups taken apart.
+Result<SolverState> restore(const Checkpoint& checkpoint,
+                            const std::shared_ptr<const World>& world);
 // The solution over its scene, warnings of which are printed.
 Result<SolverState> restore(const CheckpointArguments& arguments);
 

@@ -47,8 +47,8 @@ Result<void> check_for_checkpoint(const CLI::App& command, const RenderArguments
   }
   std::vector<const char*> fixed{"--unit", "--up", "--sky"};
   if (arguments.path_trace == 0)
-    fixed.insert(fixed.end(),
-                 {"--visibility", "--feature-size", "--error", "--time", "--links", "--hierarchy"});
+    fixed.insert(fixed.end(), {"--visibility", "--feature-size", "--error", "--time", "--links",
+                               "--hierarchy", "--intra-cluster"});
   for (const char* option : fixed)
     if (command.get_option(option)->count() > 0)
       return input_error(fmt::format("{} is already settled by the checkpoint", option),
@@ -73,7 +73,7 @@ Result<Image> solved_image(const RenderArguments& arguments,
                            const std::optional<Checkpoint>& checkpoint, const View& view,
                            const Progress& progress) {
   const Result<SolverState> solved =
-      checkpoint ? checkpoint->restore(world) : solve(arguments, world);
+      checkpoint ? restore(*checkpoint, world) : solve(arguments, world);
   if (!solved) return tl::unexpected(solved.error());
   const SolverState& state = *solved;
   const SolutionReader reader(state, kMeshReading);

@@ -8,13 +8,13 @@
 #include "commands.h"
 #include "halflight/base/parallel.h"
 #include "halflight/io/atomic_file.h"
-#include "halflight/output/exposure.h"
-#include "halflight/output/lit_mesh.h"
 #include "halflight/output/read_light.h"
 #include "halflight/output/report.h"
 #include "halflight/scene/scene_digest.h"
 #include "halflight/solve/checkpoint.h"
+#include "halflight/solve/mix.h"
 #include "interrupt.h"
+#include "lit_output.h"
 #include "scene_arguments.h"
 #include "sensor_arguments.h"
 #include "solve_arguments.h"
@@ -29,6 +29,7 @@ struct Outputs {
   std::filesystem::path report;
   std::filesystem::path checkpoint;
   bool resume = false;
+  std::optional<std::string> groups;  // --light-groups; empty text: one for each name
 };
 
 struct SolveCommand {
@@ -36,25 +37,6 @@ struct SolveCommand {
   SolveArguments solve;
   Outputs outputs;
 };
-
-Result<void> write_lit(const std::filesystem::path& path, const SolverState& state, Report& report,
-                       const Progress& progress) {
-  const World& world = *state.world;
-  const SolutionReader reader(state, kMeshReading);
-  LitMeshOptions options;
-  options.feature_size = state.options.feature_size;
-  const auto start = std::chrono::steady_clock::now();
-  const LitMesh mesh = build_lit_mesh(
-      world.scene, world.geometry,
-      [&](std::span<const ReadingPoint> points) { return reader(points, progress); }, options,
-      progress);
-  report.end_phase("lit mesh", start);
-  const float exposure = automatic_exposure(world.scene, world.geometry, mesh.primitives);
-  auto written = write_lit_glb(path, world.scene, world.geometry, mesh.primitives, exposure);
-  report.end_phase("write lit", start);
-  report.set_lit_mesh(mesh, exposure);
-  return written;
-}
 
 void warn(const std::string& text) {
   std::fputs(("halflight: warning: " + text + "\n").c_str(), stderr);
@@ -66,19 +48,48 @@ void warn_without_output(const Outputs& outputs) {
     warn("nothing will be written (add -o lit.glb, --points, --report or --checkpoint)");
 }
 
+// A resumed solve takes its groups from the checkpoint; others may not be asked for.
+Result<void> check_groups(const Outputs& outputs, const SolverState& state) {
+  std::vector<LightGroup> asked;
+  if (outputs.groups) {
+    const World& world = state.grouped.world ? *state.grouped.world : *state.world;
+    auto groups = find_light_groups(world.scene, *outputs.groups);
+    if (!groups) return tl::unexpected(groups.error());
+    asked = std::move(*groups);
+  }
+  const auto& there = state.grouped.groups;
+  const auto same = [](const LightGroup& a, const LightGroup& b) {
+    return a.name == b.name && a.materials == b.materials && a.lights == b.lights && a.sky == b.sky;
+  };
+  if (std::equal(there.begin(), there.end(), asked.begin(), asked.end(), same)) return {};
+  return input_error("the checkpoint is of another solve: it has other light groups",
+                     outputs.checkpoint.string(), "give the same --light-groups");
+}
+
 // The state to begin with: fresh, or that of the checkpoint.
 Result<SolverState> begin(const Outputs& outputs, const std::shared_ptr<const World>& world,
                           const SolveOrigin& origin) {
-  if (!outputs.resume) return make_state(world, origin.options);
+  const auto fresh = [&]() -> Result<SolverState> {
+    SolverState state = make_state(world, origin.options);
+    if (!outputs.groups) return state;
+    auto groups = find_light_groups(world->scene, *outputs.groups);
+    if (!groups) return tl::unexpected(groups.error());
+    set_groups(state, std::move(*groups));
+    return state;
+  };
+  if (!outputs.resume) return fresh();
   std::error_code ignored;
   if (!std::filesystem::exists(outputs.checkpoint, ignored)) {
     warn(outputs.checkpoint.string() + " does not exist yet: solving from the beginning");
-    return make_state(world, origin.options);
+    return fresh();
   }
   const auto checkpoint = Checkpoint::open(outputs.checkpoint);
   if (!checkpoint) return tl::unexpected(checkpoint.error());
   if (auto same = checkpoint->check(origin); !same) return tl::unexpected(same.error());
-  return checkpoint->restore(world);
+  auto state = checkpoint->restore(world);
+  if (!state) return state;
+  if (auto same = check_groups(outputs, *state); !same) return tl::unexpected(same.error());
+  return state;
 }
 
 // Keeps the last iteration that was not cut short: going on from there gives what would have come
@@ -145,10 +156,18 @@ Result<int> run(const SolveCommand& command) {
   Saver saver(command.outputs, origin, report);
   if (auto saved = saver.begin(state); !saved) return tl::unexpected(saved.error());
   phase = std::chrono::steady_clock::now();
-  const SolveOutcome outcome =
-      run_to_goal(state, plan->goals, deadline, progress, !command.outputs.report.empty(),
-                  [&](const SolverState&) { saver.after_iteration(state, progress); });
+  const auto after_iteration = [&](const SolverState&) {
+    if (state.history.size() == 1) balance(state, progress);
+    saver.after_iteration(state, progress);
+  };
+  const SolveOutcome outcome = run_to_goal(state, plan->goals, deadline, progress,
+                                           !command.outputs.report.empty(), after_iteration);
   report.end_phase("solve", phase);
+  if (!state.grouped.groups.empty() && !state.grouped.separated()) {
+    phase = std::chrono::steady_clock::now();
+    separate(state, progress);
+    report.end_phase("light groups", phase);
+  }
   const auto saved = saver.end(state);
 
   if (!sensors->empty()) {
@@ -188,6 +207,11 @@ void add_solve(CLI::App& cli, int& status) {
       sub.add_option("--checkpoint", command->outputs.checkpoint,
                      "keep the solution here, to go on with --resume, for sample and for render")
           ->type_name("FILE");
+  sub.add_option("--light-groups", command->outputs.groups,
+                 "take the light apart by who sends it, for mix: each material, light and the sky "
+                 "by name, or several together as \"ceiling=LampA,LampB;desk=LampC\"")
+      ->expected(0, 1)
+      ->type_name("GROUPS");
   sub.add_flag("--resume", command->outputs.resume, "go on from the checkpoint")->needs(checkpoint);
   sub.callback([command, &status] {
     set_thread_count(command->solve.threads);

@@ -10,6 +10,7 @@
 
 #include "halflight/base/parallel.h"
 #include "halflight/scene/scene_digest.h"
+#include "halflight/solve/mix.h"
 #include "halflight/solve/settings.h"
 #include "halflight/solve/state_fields.h"
 
@@ -57,6 +58,8 @@ class Judge {
   bool operator()(float v) const { return std::isfinite(v); }
   bool operator()(const Rgb& v) const { return is_finite(v); }
   bool operator()(Stage v) const { return v <= Stage::done; }
+  bool operator()(MaterialId) const { return true; }  // judged by the scene
+  bool operator()(LightId) const { return true; }
   bool operator()(ElementId e) const { return e.value < tree_.size(); }
   bool operator()(const ElementPair& p) const { return (*this)(p.receiver) && (*this)(p.source); }
   bool operator()(const Link& l) const {
@@ -204,6 +207,79 @@ bool read_history(const FieldReader& read, std::vector<IterationRecord>& history
 
 std::string to_text(const Rgb& c) { return fmt::format("{},{},{}", c.r, c.g, c.b); }
 
+std::string number_of(std::size_t group) { return fmt::format("group {}", group); }
+
+// Names and members; the light only once it is known.
+void write_groups(SectionWriter& file, const FieldWriter& write, const GroupedLight& grouped) {
+  write("groups", grouped.factors);
+  for (std::size_t g = 0; g < grouped.groups.size(); ++g) {
+    const LightGroup& group = grouped.groups[g];
+    const std::string name = number_of(g);
+    file.add(name, std::string_view(group.name));
+    write(name + " materials", group.materials);
+    write(name + " lights", group.lights);
+    write(name + " sky", group.sky ? 1 : 0);
+  }
+  write("groups separated", grouped.separated() ? 1 : 0);
+  if (!grouped.separated()) return;
+  write("groups' exitance", grouped.exitance);
+  for (std::size_t g = 0; g < grouped.light.size(); ++g) {
+    write(number_of(g) + " given light", grouped.light[g].given_light);
+    write(number_of(g) + " irradiance", grouped.light[g].irradiance);
+  }
+}
+
+Result<void> read_groups(const SectionReader& file, const FieldReader& read, const Scene& scene,
+                         GroupedLight& grouped) {
+  read("groups", grouped.factors);
+  grouped.groups.resize(grouped.factors.size());
+  for (std::size_t g = 0; g < grouped.groups.size(); ++g) {
+    LightGroup& group = grouped.groups[g];
+    const std::string name = number_of(g);
+    const auto text = file.text(name);
+    if (!text) return tl::unexpected(text.error());
+    group.name = *text;
+    int sky = 0;
+    read(name + " materials", group.materials);
+    read(name + " lights", group.lights);
+    read(name + " sky", sky);
+    group.sky = sky != 0;
+    const auto known = [](const auto& ids, const auto& items) {
+      return std::all_of(ids.begin(), ids.end(), [&](auto id) { return items.contains(id); });
+    };
+    if (!known(group.materials, scene.materials) || !known(group.lights, scene.lights))
+      return file.damaged(name);
+  }
+  int separated = 0;
+  read("groups separated", separated);
+  if (separated == 0) return {};
+  read("groups' exitance", grouped.exitance);
+  grouped.light.resize(grouped.groups.size());
+  for (std::size_t g = 0; g < grouped.light.size(); ++g) {
+    read(number_of(g) + " given light", grouped.light[g].given_light);
+    read(number_of(g) + " irradiance", grouped.light[g].irradiance);
+  }
+  return {};
+}
+
+// What light groups need that is not in the file.
+bool finish_groups(SolverState& state) {
+  GroupedLight& grouped = state.grouped;
+  const auto whole = [&](const auto& items) { return items.size() == state.tree.size(); };
+  if (grouped.separated()) {
+    bool complete = whole(grouped.exitance);
+    for (const GroupLight& light : grouped.light)
+      complete = complete && whole(light.given_light) && whole(light.irradiance);
+    if (!complete) return false;
+  }
+  if (grouped.groups.empty()) return true;
+  grouped.world = state.world;
+  const std::vector<Rgb> factors = grouped.factors;
+  if (std::any_of(factors.begin(), factors.end(), [](const Rgb& f) { return f != Rgb(1.f); }))
+    relight(state, factors);
+  return true;
+}
+
 constexpr const char* kGiveTheSame =
     "give the same options, or solve anew without --resume to another file";
 
@@ -230,6 +306,7 @@ Result<void> write_checkpoint(const std::filesystem::path& path, const SolveOrig
   const FieldWriter write(file, state.tree);
   for_each_field(state, write);
   write_history(write, state.history);
+  write_groups(file, write, state.grouped);
   return file.write(path);
 }
 
@@ -320,11 +397,14 @@ Result<SolverState> Checkpoint::restore(const std::shared_ptr<const World>& worl
     const FieldReader read(sections_, state.tree);
     for_each_field(state, read);
     const bool equal = read_history(read, state.history);
+    if (auto groups = read_groups(sections_, read, world->scene, state.grouped); !groups)
+      return tl::unexpected(groups.error());
     if (!read.result()) return tl::unexpected(read.result().error());
     if (!equal) return sections_.damaged("history");
     if (std::any_of(state.sampled.begin(), state.sampled.end(), [](auto round) { return round; }))
       state.emitters =
           std::make_shared<EmitterTree>(*state.visibility, find_emitters(*state.world));
+    if (!finish_groups(state)) return sections_.damaged("groups");
     return state;
   } catch (const std::bad_alloc&) {
     return system_error("there is not enough memory to read the checkpoint", path_.string(),
@@ -333,11 +413,12 @@ Result<SolverState> Checkpoint::restore(const std::shared_ptr<const World>& worl
 }
 
 Result<void> CheckpointKeeper::save(const SolverState& state) {
-  if (state.history.size() == saved_iterations_) return {};
+  const auto present = std::pair(state.history.size(), state.grouped.separated());
+  if (saved_ == present) return {};
   const auto start = Clock::now();
   if (auto written = write_checkpoint(path_, origin_, state); !written) return written;
   const auto end = Clock::now();
-  saved_iterations_ = state.history.size();
+  saved_ = present;
   due_ = end + std::chrono::duration_cast<Clock::duration>((end - start) / kLargestShare);
   return {};
 }

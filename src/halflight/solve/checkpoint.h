@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "halflight/base/result.h"
 #include "halflight/io/checkpoint_file.h"
@@ -71,7 +73,7 @@ class CheckpointKeeper {
 
   std::filesystem::path path_;
   SolveOrigin origin_;
-  std::size_t saved_iterations_ = SIZE_MAX;
+  std::optional<std::pair<std::size_t, bool>> saved_;  // iterations, and whether groups are apart
   Clock::time_point due_ = Clock::now();
 };
 

@@ -11,6 +11,7 @@
 #include "halflight/hierarchy/build_hierarchy.h"
 #include "halflight/hierarchy/elements.h"
 #include "halflight/rays/world.h"
+#include "halflight/solve/grouped_light.h"
 #include "halflight/solve/schedule.h"
 #include "halflight/transport/cluster_visibility.h"
 #include "halflight/transport/emitter_tree.h"
@@ -71,6 +72,8 @@ struct SolverState {
   // By what the light of links is multiplied on leaf cells; see sweep.cpp. Empty: to be found anew.
   IdVector<ElementId, float> row_limits{};
   std::shared_ptr<const EmitterTree> emitters{};  // made when the first links are sampled
+
+  GroupedLight grouped{};  // empty: the light is only known as a whole
 
   Schedule schedule{};
   CostModel costs{};
