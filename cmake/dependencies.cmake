@@ -23,3 +23,6 @@ endforeach()
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tsl-robin-map REQUIRED)
+
+# Debian's zstd brings no CMake package: linked by its plain name, here and by a consumer.
+find_library(HALFLIGHT_ZSTD zstd REQUIRED)

@@ -25,6 +25,8 @@ int fail(const Error& error);
 void add_inspect(CLI::App& cli, int& status);
 void add_reference(CLI::App& cli, int& status);
 void add_render(CLI::App& cli, int& status);
+void add_mix(CLI::App& cli, int& status);
+void add_sample(CLI::App& cli, int& status);
 void add_solve(CLI::App& cli, int& status);
 void add_scene(CLI::App& cli, int& status);
 void add_compare(CLI::App& cli, int& status);

@@ -21,6 +21,8 @@ int main(int argc, char** argv) {
   });
   int status = halflight::app::kGoalMet;
   halflight::app::add_solve(cli, status);
+  halflight::app::add_sample(cli, status);
+  halflight::app::add_mix(cli, status);
   halflight::app::add_render(cli, status);
   halflight::app::add_inspect(cli, status);
   halflight::app::add_scene(cli, status);

@@ -1,6 +1,10 @@
-// halflight render SCENE: a picture from a camera, of the solved light or path-traced.
+// halflight render SCENE|CHECKPOINT: a picture from a camera, of the solved light or path-traced.
 #include <memory>
+#include <optional>
 
+#include <fmt/format.h>
+
+#include "checkpoint_arguments.h"
 #include "commands.h"
 #include "halflight/base/parallel.h"
 #include "halflight/io/image_write.h"
@@ -18,6 +22,7 @@ namespace {
 
 struct RenderArguments {
   SceneArguments scene;
+  std::filesystem::path scene_of_checkpoint;
   SolveArguments solve;
   ViewArguments view;
   std::uint32_t path_trace = 0;  // paths per pixel; 0: show the solved light
@@ -33,19 +38,46 @@ Result<void> check(const RenderArguments& arguments) {
   return {};
 }
 
-Result<Image> solved_image(const RenderArguments& arguments,
-                           const std::shared_ptr<const World>& world, const View& view,
-                           const Progress& progress) {
+// The scene of a checkpoint and the light in it are what they are.
+Result<void> check_for_checkpoint(const CLI::App& command, const RenderArguments& arguments) {
+  if (!is_checkpoint(arguments.scene.path)) {
+    if (arguments.scene_of_checkpoint.empty()) return {};
+    return input_error("--scene goes with a checkpoint", arguments.scene.path.string(),
+                       "leave it out");
+  }
+  std::vector<const char*> fixed{"--unit", "--up", "--sky"};
+  if (arguments.path_trace == 0)
+    fixed.insert(fixed.end(),
+                 {"--visibility", "--feature-size", "--error", "--time", "--links", "--hierarchy",
+                  "--intra-cluster", "--importance", "--feature-sizes"});
+  for (const char* option : fixed)
+    if (command.get_option(option)->count() > 0)
+      return input_error(fmt::format("{} is already settled by the checkpoint", option),
+                         arguments.scene.path.string(), "leave it out, or solve again with it");
+  return {};
+}
+
+Result<SolverState> solve(const RenderArguments& arguments,
+                          const std::shared_ptr<const World>& world) {
   Result<SolvePlan> plan = resolve(arguments.solve);
   if (!plan) return tl::unexpected(plan.error());
   if (auto ok = complete(*plan, arguments.solve, *world); !ok) return tl::unexpected(ok.error());
   SolverState state = make_state(world, plan->options);
-  {
-    // A deadline ends the refinement and not the picture.
-    Progress solving(progress_listener(arguments.solve));
-    const Deadline deadline(solving, arguments.solve, Deadline::Clock::now());
-    run_to_goal(state, plan->goals, deadline, solving, false);
-  }
+  // A deadline ends the refinement and not the picture.
+  Progress solving(progress_listener(arguments.solve));
+  const Deadline deadline(solving, arguments.solve, Deadline::Clock::now());
+  run_to_goal(state, plan->goals, deadline, solving, false);
+  return state;
+}
+
+Result<Image> solved_image(const RenderArguments& arguments,
+                           const std::shared_ptr<const World>& world,
+                           const std::optional<Checkpoint>& checkpoint, const View& view,
+                           const Progress& progress) {
+  const Result<SolverState> solved =
+      checkpoint ? restore(*checkpoint, world) : solve(arguments, world);
+  if (!solved) return tl::unexpected(solved.error());
+  const SolverState& state = *solved;
   const SolutionReader reader(state, kMeshReading);
   LitMeshOptions mesh_options;
   mesh_options.feature_size = state.options.feature_size;
@@ -69,7 +101,14 @@ Result<Image> path_traced(const RenderArguments& arguments, const World& world, 
 
 Result<void> render(const RenderArguments& arguments) {
   if (auto ok = check(arguments); !ok) return ok;
-  Result<Scene> scene = load(arguments.scene);
+  std::optional<Checkpoint> checkpoint;
+  if (is_checkpoint(arguments.scene.path)) {
+    auto opened = Checkpoint::open(arguments.scene.path);
+    if (!opened) return tl::unexpected(opened.error());
+    checkpoint = std::move(*opened);
+  }
+  Result<Scene> scene =
+      checkpoint ? checkpoint->load_scene(arguments.scene_of_checkpoint) : load(arguments.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
   const auto world = make_world(std::move(*scene));
@@ -81,7 +120,7 @@ Result<void> render(const RenderArguments& arguments) {
   const Progress progress(progress_listener(arguments.solve));
   const Result<Image> picture = arguments.path_trace > 0
                                     ? path_traced(arguments, *world, *view, progress)
-                                    : solved_image(arguments, world, *view, progress);
+                                    : solved_image(arguments, world, checkpoint, *view, progress);
   if (!picture) return tl::unexpected(picture.error());
   if (auto written = write_picture(arguments.view, *picture); !written) return written;
   if (arguments.visibility_output.empty()) return {};
@@ -96,7 +135,8 @@ Result<void> render(const RenderArguments& arguments) {
 void add_render(CLI::App& cli, int& status) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App& command = *cli.add_subcommand("render", "picture of a scene from a camera");
-  add_scene_arguments(command, arguments->scene);
+  add_scene_arguments(command, arguments->scene, "SCENE|CHECKPOINT");
+  add_scene_of_checkpoint(command, arguments->scene_of_checkpoint);
   add_view_arguments(command, arguments->view);
   add_solve_arguments(command, arguments->solve);
   command
@@ -119,9 +159,10 @@ void add_render(CLI::App& cli, int& status) {
       ->capture_default_str();
   command.add_option("--seed", arguments->seed, "picks another set of samples")
       ->capture_default_str();
-  command.callback([arguments, &status] {
+  command.callback([arguments, &command, &status] {
     set_thread_count(arguments->solve.threads);
-    const Result<void> done = render(*arguments);
+    Result<void> done = check_for_checkpoint(command, *arguments);
+    if (done) done = render(*arguments);
     status = done ? kGoalMet : fail(done.error());
   });
 }

@@ -60,8 +60,12 @@ void add_scene_arguments(CLI::App& command, SceneArguments& arguments,
 
 Result<Scene> load(const SceneArguments& arguments) {
   Result<Scene> scene = load_scene(arguments.path, arguments.load);
-  if (scene) scene->sky = Rgb(arguments.sky[0], arguments.sky[1], arguments.sky[2]);
+  if (scene) scene->sky = source_of(arguments).sky;
   return scene;
+}
+
+SceneSource source_of(const SceneArguments& arguments) {
+  return {arguments.path, arguments.load, {arguments.sky[0], arguments.sky[1], arguments.sky[2]}};
 }
 
 void print_warnings(const Scene& scene) {

@@ -11,6 +11,7 @@
 #include "halflight/base/result.h"
 #include "halflight/io/load_scene.h"
 #include "halflight/scene/scene.h"
+#include "halflight/solve/checkpoint.h"
 
 namespace halflight::app {
 
@@ -26,6 +27,9 @@ void add_scene_arguments(CLI::App& command, SceneArguments& arguments,
 
 // Reads the scene and gives it the sky. Scene::warnings is left to the caller to show.
 Result<Scene> load(const SceneArguments& arguments);
+
+// What a checkpoint remembers of these arguments.
+SceneSource source_of(const SceneArguments& arguments);
 
 // Prints Scene::warnings to stderr, one line each.
 void print_warnings(const Scene& scene);

@@ -3,21 +3,20 @@
 #include <csignal>
 #include <fstream>
 #include <memory>
-
-#include <fmt/format.h>
+#include <optional>
 
 #include "commands.h"
 #include "halflight/base/parallel.h"
-#include "halflight/base/quantities.h"
 #include "halflight/io/atomic_file.h"
-#include "halflight/io/sensors.h"
-#include "halflight/output/exposure.h"
-#include "halflight/output/lit_mesh.h"
 #include "halflight/output/read_light.h"
 #include "halflight/output/report.h"
-#include "halflight/rays/sensor_placement.h"
+#include "halflight/scene/scene_digest.h"
+#include "halflight/solve/checkpoint.h"
+#include "halflight/solve/mix.h"
 #include "interrupt.h"
+#include "lit_output.h"
 #include "scene_arguments.h"
+#include "sensor_arguments.h"
 #include "solve_arguments.h"
 #include "solve_run.h"
 
@@ -26,9 +25,11 @@ namespace {
 
 struct Outputs {
   std::filesystem::path lit;
-  std::filesystem::path points;
-  std::filesystem::path points_out;
+  SensorArguments sensors;
   std::filesystem::path report;
+  std::filesystem::path checkpoint;
+  bool resume = false;
+  std::optional<std::string> groups;  // --light-groups; empty text: one for each name
 };
 
 struct SolveCommand {
@@ -37,59 +38,101 @@ struct SolveCommand {
   Outputs outputs;
 };
 
-std::vector<Rgb> read_sensors_at(const SolutionReader& reader, const World& world,
-                                 std::span<const Sensor> sensors) {
-  std::vector<ReadingPoint> points(sensors.size());
-  parallel_for(sensors.size(), 64, [&](std::size_t i) {
-    const WorldSensor sensor = to_world(world.scene.to_world, sensors[i]);
-    const SensorPlacement placed =
-        place_sensor(world.geometry, world.rays, sensor.position, sensor.normal);
-    points[i] = {placed.position, placed.normal, placed.triangle};
-  });
-  const std::vector<Reading> readings = reader(points);
-  std::vector<Rgb> irradiance(readings.size());
-  for (std::size_t i = 0; i < readings.size(); ++i) irradiance[i] = readings[i].irradiance();
-  return irradiance;
-}
-
-Result<void> write_lit(const std::filesystem::path& path, const SolverState& state, Report& report,
-                       const Progress& progress) {
-  const World& world = *state.world;
-  const SolutionReader reader(state, kMeshReading);
-  LitMeshOptions options;
-  options.feature_size = state.options.feature_size;
-  options.finest = finest_mesh_edge(state);
-  const auto start = std::chrono::steady_clock::now();
-  const LitMesh mesh = build_lit_mesh(
-      world.scene, world.geometry,
-      [&](std::span<const ReadingPoint> points) { return reader(points, progress); }, options,
-      progress);
-  report.end_phase("lit mesh", start);
-  const float exposure = automatic_exposure(world.scene, world.geometry, mesh.primitives);
-  auto written = write_lit_glb(path, world.scene, world.geometry, mesh.primitives, exposure);
-  report.end_phase("write lit", start);
-  report.set_lit_mesh(mesh, exposure);
-  return written;
+void warn(const std::string& text) {
+  std::fputs(("halflight: warning: " + text + "\n").c_str(), stderr);
 }
 
 void warn_without_output(const Outputs& outputs) {
-  if (outputs.lit.empty() && outputs.points.empty() && outputs.report.empty())
-    std::fputs(
-        "halflight: warning: nothing will be written (add -o lit.glb, --points or --report)\n",
-        stderr);
+  if (outputs.lit.empty() && outputs.sensors.points.empty() && outputs.report.empty() &&
+      outputs.checkpoint.empty())
+    warn("nothing will be written (add -o lit.glb, --points, --report or --checkpoint)");
 }
+
+// A resumed solve takes its groups from the checkpoint; others may not be asked for.
+Result<void> check_groups(const Outputs& outputs, const SolverState& state) {
+  std::vector<LightGroup> asked;
+  if (outputs.groups) {
+    const World& world = state.grouped.world ? *state.grouped.world : *state.world;
+    auto groups = find_light_groups(world.scene, *outputs.groups);
+    if (!groups) return tl::unexpected(groups.error());
+    asked = std::move(*groups);
+  }
+  const auto& there = state.grouped.groups;
+  const auto same = [](const LightGroup& a, const LightGroup& b) {
+    return a.name == b.name && a.materials == b.materials && a.lights == b.lights && a.sky == b.sky;
+  };
+  if (std::equal(there.begin(), there.end(), asked.begin(), asked.end(), same)) return {};
+  return input_error("the checkpoint is of another solve: it has other light groups",
+                     outputs.checkpoint.string(), "give the same --light-groups");
+}
+
+// The state to begin with: fresh, or that of the checkpoint.
+Result<SolverState> begin(const Outputs& outputs, const std::shared_ptr<const World>& world,
+                          const SolveOrigin& origin) {
+  const auto fresh = [&]() -> Result<SolverState> {
+    SolverState state = make_state(world, origin.options);
+    if (!outputs.groups) return state;
+    auto groups = find_light_groups(world->scene, *outputs.groups);
+    if (!groups) return tl::unexpected(groups.error());
+    set_groups(state, std::move(*groups));
+    return state;
+  };
+  if (!outputs.resume) return fresh();
+  std::error_code ignored;
+  if (!std::filesystem::exists(outputs.checkpoint, ignored)) {
+    warn(outputs.checkpoint.string() + " does not exist yet: solving from the beginning");
+    return fresh();
+  }
+  const auto checkpoint = Checkpoint::open(outputs.checkpoint);
+  if (!checkpoint) return tl::unexpected(checkpoint.error());
+  if (auto same = checkpoint->check(origin); !same) return tl::unexpected(same.error());
+  auto state = checkpoint->restore(world);
+  if (!state) return state;
+  if (auto same = check_groups(outputs, *state); !same) return tl::unexpected(same.error());
+  return state;
+}
+
+// Keeps the last iteration that was not cut short: going on from there gives what would have come
+// without the interruption.
+class Saver {
+ public:
+  Saver(const Outputs& outputs, const SolveOrigin& origin, Report& report) : report_(report) {
+    if (!outputs.checkpoint.empty()) keeper_.emplace(outputs.checkpoint, origin);
+  }
+  // A place that cannot be written to is told at once.
+  Result<void> begin(const SolverState& state) { return save(&CheckpointKeeper::save, state); }
+  void after_iteration(const SolverState& state, const Progress& progress) {
+    cut_short_ = progress.cancelled();
+    if (cut_short_) return;
+    if (auto saved = save(&CheckpointKeeper::save_if_due, state); !saved)
+      warn(saved.error().line());
+  }
+  Result<void> end(const SolverState& state) {
+    return cut_short_ ? Result<void>() : save(&CheckpointKeeper::save, state);
+  }
+
+ private:
+  Result<void> save(Result<void> (CheckpointKeeper::*how)(const SolverState&),
+                    const SolverState& state) {
+    if (!keeper_) return {};
+    const auto start = Report::Clock::now();
+    auto saved = ((*keeper_).*how)(state);
+    report_.end_phase("checkpoint", start);
+    return saved;
+  }
+
+  Report& report_;
+  std::optional<CheckpointKeeper> keeper_;
+  bool cut_short_ = false;
+};
 
 Result<int> run(const SolveCommand& command) {
   Report report;
   const auto start = std::chrono::steady_clock::now();
   Result<SolvePlan> plan = resolve(command.solve);
   if (!plan) return tl::unexpected(plan.error());
-  std::vector<Sensor> sensors;
-  if (!command.outputs.points.empty()) {
-    auto read = read_sensors(command.outputs.points);
-    if (!read) return tl::unexpected(read.error());
-    sensors = std::move(*read);
-  }
+  const auto sensors = read_sensors(command.outputs.sensors);
+  if (!sensors) return tl::unexpected(sensors.error());
   Result<Scene> scene = load(command.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
@@ -105,19 +148,32 @@ Result<int> run(const SolveCommand& command) {
   const Interruptible interruptible(progress);
   const Deadline deadline(progress, command.solve, start);
   phase = std::chrono::steady_clock::now();
-  SolverState state = make_state(world, plan->options);
+  SolveOrigin origin{source_of(command.scene), 0, resolved(plan->options, *world)};
+  if (!command.outputs.checkpoint.empty()) origin.scene_digest = digest_of(world->scene);
+  Result<SolverState> begun = begin(command.outputs, world, origin);
+  if (!begun) return tl::unexpected(begun.error());
+  SolverState& state = *begun;
   report.end_phase("hierarchy", phase);
+  Saver saver(command.outputs, origin, report);
+  if (auto saved = saver.begin(state); !saved) return tl::unexpected(saved.error());
   phase = std::chrono::steady_clock::now();
-  const SolveOutcome outcome =
-      run_to_goal(state, plan->goals, deadline, progress, !command.outputs.report.empty());
+  const auto after_iteration = [&](const SolverState&) {
+    if (state.history.size() == 1) balance(state, progress);
+    saver.after_iteration(state, progress);
+  };
+  const SolveOutcome outcome = run_to_goal(state, plan->goals, deadline, progress,
+                                           !command.outputs.report.empty(), after_iteration);
   report.end_phase("solve", phase);
-
-  if (!sensors.empty()) {
+  if (!state.grouped.groups.empty() && !state.grouped.separated()) {
     phase = std::chrono::steady_clock::now();
-    const std::vector<Rgb> irradiance =
-        read_sensors_at(SolutionReader(state, sensor_reading(state)), *world, sensors);
-    auto written =
-        write_sensor_table(command.outputs.points_out, sensor_table(sensors, irradiance));
+    separate(state, progress);
+    report.end_phase("light groups", phase);
+  }
+  const auto saved = saver.end(state);
+
+  if (!sensors->empty()) {
+    phase = std::chrono::steady_clock::now();
+    auto written = write_irradiance(command.outputs.sensors, state, *sensors);
     if (!written) return tl::unexpected(written.error());
     report.end_phase("sensors", phase);
   }
@@ -134,6 +190,7 @@ Result<int> run(const SolveCommand& command) {
     auto written = write_text_atomically(command.outputs.report, report.json(state));
     if (!written) return tl::unexpected(written.error());
   }
+  if (!saved) return tl::unexpected(saved.error());
   return status;
 }
 
@@ -145,14 +202,18 @@ void add_solve(CLI::App& cli, int& status) {
   add_scene_arguments(sub, command->scene);
   add_solve_arguments(sub, command->solve);
   sub.add_option("-o,--output", command->outputs.lit, "lit scene, GLB")->type_name("lit.glb");
-  CLI::Option* points =
-      sub.add_option("--points", command->outputs.points, "sensors: lines \"x y z nx ny nz\"")
-          ->type_name("FILE");
-  sub.add_option("--points-out", command->outputs.points_out,
-                 "the sensors with \"Er Eg Eb\" added; standard output without it")
-      ->type_name("FILE")
-      ->needs(points);
+  add_sensor_arguments(sub, command->outputs.sensors);
   sub.add_option("--report", command->outputs.report, "what was done, JSON")->type_name("FILE");
+  CLI::Option* checkpoint =
+      sub.add_option("--checkpoint", command->outputs.checkpoint,
+                     "keep the solution here, to go on with --resume, for sample and for render")
+          ->type_name("FILE");
+  sub.add_option("--light-groups", command->outputs.groups,
+                 "take the light apart by who sends it, for mix: each material, light and the sky "
+                 "by name, or several together as \"ceiling=LampA,LampB;desk=LampC\"")
+      ->expected(0, 1)
+      ->type_name("GROUPS");
+  sub.add_flag("--resume", command->outputs.resume, "go on from the checkpoint")->needs(checkpoint);
   sub.callback([command, &status] {
     set_thread_count(command->solve.threads);
     const Result<int> done = run(*command);

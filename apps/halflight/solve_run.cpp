@@ -52,7 +52,9 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
   const ErrorProbes probes(state);
   outcome.error = probes.measure(state);
   if (!goals.error) return outcome;
-  for (int round = 1; outcome.goal_met && outcome.error->relative_rms > *goals.error; ++round) {
+  // A solve that was resumed has some of its rounds behind it.
+  for (int round = std::max<int>(1, state.schedule.round);
+       outcome.goal_met && outcome.error->relative_rms > *goals.error; ++round) {
     if (round == kMostRounds) {
       outcome.goal_met = false;
       break;

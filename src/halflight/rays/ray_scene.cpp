@@ -134,7 +134,7 @@ std::optional<RayHit> RayScene::Impl::intersect(const Vec3& origin, const Vec3& 
   return hit;
 }
 
-RayScene::RayScene(const Scene& scene, const Geometry& geometry) : impl_(std::make_unique<Impl>()) {
+RayScene::RayScene(const Scene& scene, const Geometry& geometry) : impl_(std::make_shared<Impl>()) {
   _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
   _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
   impl_->source = &scene;
@@ -157,6 +157,8 @@ RayScene::RayScene(const Scene& scene, const Geometry& geometry) : impl_(std::ma
 }
 
 RayScene::~RayScene() = default;
+RayScene::RayScene(const RayScene& other, std::shared_ptr<const void> owner)
+    : impl_(other.impl_), owner_(std::move(owner)), lift_distance_(other.lift_distance_) {}
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 

@@ -36,6 +36,8 @@ class RayScene {
  public:
   RayScene(const Scene& scene, const Geometry& geometry);
   ~RayScene();
+  // Shares what was built; `owner` keeps the other's scene and geometry.
+  RayScene(const RayScene& other, std::shared_ptr<const void> owner);
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
@@ -65,7 +67,8 @@ class RayScene {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<Impl> impl_;
+  std::shared_ptr<const void> owner_;
   float lift_distance_ = 0.f;
 };
 

@@ -12,6 +12,12 @@ namespace halflight {
 
 struct World {
   explicit World(Scene s) : scene(std::move(s)), geometry(flatten(scene)), rays(scene, geometry) {}
+  // The same world under other light: `relit` is its scene but for what materials, punctual lights
+  // and the sky emit. Shares what rays ask.
+  World(const std::shared_ptr<const World>& other, Scene relit)
+      : scene(std::move(relit)),
+        geometry(with_lights_of(scene, other->geometry)),
+        rays(other->rays, other) {}
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 

@@ -136,7 +136,10 @@ Geometry flatten(const Scene& scene) {
     const NodeId id(i);
     const Node& node = scene.nodes[id];
     const Mat4 world = scene.to_world * global[id];
-    if (node.light.valid()) g.lights.push_back(place(scene.lights[node.light], world));
+    if (node.light.valid()) {
+      g.lights.push_back(place(scene.lights[node.light], world));
+      g.lights.back().light = node.light;
+    }
     if (node.camera.valid()) {
       g.cameras.push_back(place(scene.cameras[node.camera], world));
       if (g.cameras.back().name.empty()) g.cameras.back().name = node.name;
@@ -157,6 +160,12 @@ Geometry flatten(const Scene& scene) {
     }
   }
   return g;
+}
+
+Geometry with_lights_of(const Scene& scene, Geometry geometry) {
+  for (PunctualLight& light : geometry.lights)
+    light.intensity = scene.lights[light.light].intensity;
+  return geometry;
 }
 
 Rgb reflectance_at(const Scene& scene, const Geometry& g, TriangleId t, Vec2 barycentric) {

@@ -33,6 +33,7 @@ struct PunctualLight {
   float range = kInfinity;
   float cos_inner = 1.f;
   float cos_outer = 0.f;
+  LightId light;  // that was placed here
 };
 
 struct PlacedCamera {
@@ -85,6 +86,8 @@ struct Geometry {
 };
 
 Geometry flatten(const Scene& scene);
+// The same geometry with the punctual lights as bright as in this scene.
+Geometry with_lights_of(const Scene& scene, Geometry geometry);
 
 // Material properties at a point of a triangle given by barycentric weights of its 2nd and 3rd
 // corner.

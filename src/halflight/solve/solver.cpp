@@ -389,16 +389,26 @@ void begin_stage(SolverState& state, bool in_short_iterations) {
 
 bool IterationBudget::limited() const { return std::isfinite(seconds) || links < kUnlimited; }
 
+SolveOptions resolved(SolveOptions options, const World& world) {
+  if (options.feature_size < 0.f) options.feature_size = world.geometry.bounds.diagonal() / 200.f;
+  return options;
+}
+
 SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options) {
-  auto surfaces = std::make_shared<const Surfaces>(build_surfaces(world->geometry));
-  const auto live = find_live_sides(world->scene, world->geometry, *surfaces, world->rays);
+  const auto surfaces = std::make_shared<const Surfaces>(build_surfaces(world->geometry));
+  return make_state(world, surfaces,
+                    find_live_sides(world->scene, world->geometry, *surfaces, world->rays),
+                    options);
+}
+
+SolverState make_state(const std::shared_ptr<const World>& world,
+                       const std::shared_ptr<const Surfaces>& surfaces,
+                       const IdVector<SideId, std::uint8_t>& live, const SolveOptions& options) {
   const ClusterTree clusters = build_hierarchy(options.hierarchy, *surfaces);
   SolverState state{.world = world,
                     .surfaces = surfaces,
                     .tree = ElementTree(world->geometry, *surfaces, clusters, live),
-                    .options = options};
-  if (state.options.feature_size < 0.f)
-    state.options.feature_size = world->geometry.bounds.diagonal() / 200.f;
+                    .options = resolved(options, *world)};
   state.visibility = choose_visibility(world, *surfaces, clusters, state.options);
 
   state.feature_size_rules = std::make_shared<const FeatureSizes>(

@@ -13,6 +13,7 @@
 #include "halflight/hierarchy/elements.h"
 #include "halflight/rays/world.h"
 #include "halflight/solve/feature_sizes.h"
+#include "halflight/solve/grouped_light.h"
 #include "halflight/solve/schedule.h"
 #include "halflight/transport/cluster_visibility.h"
 #include "halflight/transport/emitter_tree.h"
@@ -82,6 +83,8 @@ struct SolverState {
   IdVector<ElementId, float> row_limits{};
   std::shared_ptr<const EmitterTree> emitters{};  // made when the first links are sampled
 
+  GroupedLight grouped{};  // empty: the light is only known as a whole
+
   Schedule schedule{};
   CostModel costs{};
   std::vector<IterationRecord> history{};
@@ -90,7 +93,14 @@ struct SolverState {
   std::size_t link_total() const { return links.size() + sampled_links.size(); }
 };
 
+// Options with defaults put in for what is left open.
+SolveOptions resolved(SolveOptions options, const World& world);
+
 SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options);
+// The same where it is known which sides can see light (hierarchy/live_sides.h).
+SolverState make_state(const std::shared_ptr<const World>& world,
+                       const std::shared_ptr<const Surfaces>& surfaces,
+                       const IdVector<SideId, std::uint8_t>& live, const SolveOptions& options);
 
 // What one iteration may cost. Without limits an iteration goes to the next level of the threshold.
 struct IterationBudget {

@@ -40,6 +40,15 @@ Vec3 PackedDirection::unpack() const {
   return glm::normalize(v);
 }
 
+LinkTable::LinkTable(std::span<const std::uint32_t> counts, std::vector<Link> links)
+    : rows_(counts.size()), links_(std::move(links)), size_(links_.size()) {
+  std::uint64_t first = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    rows_[ElementId(i)] = {first, counts[i]};
+    first += counts[i];
+  }
+}
+
 void LinkTable::append(const std::vector<ReceiverLink>& links) {
   std::vector<ElementId> receivers;
   for (const ReceiverLink& l : links) {
@@ -53,6 +62,7 @@ void LinkTable::append(const std::vector<ReceiverLink>& links) {
     rows_[r].count = 0;
   }
   links_.resize(end);
+  size_ += links.size();
   for (const ReceiverLink& l : links) {
     Row& row = rows_[l.receiver];
     links_[row.first + row.count++] = l.link;
@@ -61,7 +71,7 @@ void LinkTable::append(const std::vector<ReceiverLink>& links) {
 
 std::vector<ReceiverLink> LinkTable::release() {
   std::vector<ReceiverLink> list;
-  list.reserve(links_.size());
+  list.reserve(size_);
   for (std::size_t r = 0; r < rows_.size(); ++r)
     for (const Link& link : of(ElementId(r))) list.push_back({ElementId(r), link});
   *this = {};

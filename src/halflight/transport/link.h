@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "halflight/base/ids.h"
@@ -42,7 +43,11 @@ struct ReceiverLink {
 // Links grouped by receiver. Grows: each call of append adds whole rows.
 class LinkTable {
  public:
-  std::size_t size() const { return links_.size(); }
+  LinkTable() = default;
+  // Of links in receiver order, so many for each.
+  LinkTable(std::span<const std::uint32_t> counts, std::vector<Link> links);
+
+  std::size_t size() const { return size_; }
   std::span<const Link> of(ElementId receiver) const {
     if (!rows_.contains(receiver)) return {};
     return {links_.data() + rows_[receiver].first, rows_[receiver].count};
@@ -51,7 +56,9 @@ class LinkTable {
   void append(const std::vector<ReceiverLink>& links);
   // Forgets a receiver's links; their place is only given back by `release`.
   void clear(ElementId receiver) {
-    if (rows_.contains(receiver)) rows_[receiver].count = 0;
+    if (!rows_.contains(receiver)) return;
+    size_ -= rows_[receiver].count;
+    rows_[receiver].count = 0;
   }
   // Back to a plain list, in receiver order; leaves the table empty.
   std::vector<ReceiverLink> release();
@@ -63,6 +70,7 @@ class LinkTable {
   };
   IdVector<ElementId, Row> rows_;
   std::vector<Link> links_;
+  std::size_t size_ = 0;  // without those that were forgotten
 };
 
 }  // namespace halflight

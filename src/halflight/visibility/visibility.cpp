@@ -14,7 +14,7 @@ Visibility::Visibility(const World& world, const Surfaces& surfaces, const Clust
                        VisibilityMode mode, const MultiresOptions& options)
     : world_(&world), mode_(mode) {
   if (mode == VisibilityMode::exact) return;
-  tree_ = std::make_unique<MultiresTree>(world.scene, world.geometry, surfaces, clusters, options);
+  tree_ = std::make_shared<MultiresTree>(world.scene, world.geometry, surfaces, clusters, options);
   emitter_widths_ = emitter_widths(world, surfaces.bodies);
 }
 
@@ -29,8 +29,8 @@ float Visibility::through_tree(const VisibilityRay& ray, const StopRule& rule) c
   TraversalCount count;
   const float share = mode_ == VisibilityMode::average ? tree_->average(ray, rule, &count)
                                                        : tree_->multires(ray, rule, &count);
-  rays_.add();
-  nodes_.add(count.nodes);
+  counts_->rays.add();
+  counts_->nodes.add(count.nodes);
   return share;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "halflight/base/counter.h"
 #include "halflight/rays/world.h"
@@ -45,14 +46,19 @@ class Visibility {
   Visibility(const World& world, const Surfaces& surfaces, const ClusterTree& clusters,
              VisibilityMode mode, const MultiresOptions& options = {});
 
+  // The same in a world that differs by its light alone. Emitters keep their widths.
+  Visibility(Visibility other, const World& relit) : Visibility(std::move(other)) {
+    world_ = &relit;
+  }
+
   const World& world() const { return *world_; }
   VisibilityMode mode() const { return mode_; }
   // None in exact mode.
   const MultiresTree* tree() const { return tree_.get(); }
 
   // Through clusters so far; exact rays are counted by RayScene.
-  std::uint64_t ray_total() const { return rays_.total(); }
-  std::uint64_t node_total() const { return nodes_.total(); }
+  std::uint64_t ray_total() const { return counts_->rays.total(); }
+  std::uint64_t node_total() const { return counts_->nodes.total(); }
 
   // RayEnds::emitter_size of a place on an emitting triangle: the width of the whole emitter,
   // foreshortened as the ray sees it. 0 in exact mode, which does not ask.
@@ -80,9 +86,12 @@ class Visibility {
 
   const World* world_;
   VisibilityMode mode_ = VisibilityMode::exact;
-  std::unique_ptr<const MultiresTree> tree_;
+  std::shared_ptr<const MultiresTree> tree_;
   IdVector<TriangleId, float> emitter_widths_;
-  mutable Counter rays_, nodes_;
+  struct Counts {
+    Counter rays, nodes;
+  };
+  std::shared_ptr<Counts> counts_ = std::make_shared<Counts>();  // of all that share the tree
 };
 
 }  // namespace halflight

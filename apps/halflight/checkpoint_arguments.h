@@ -1,0 +1,29 @@
+// A solution that was stored: the positional CHECKPOINT and --scene.
+#pragma once
+
+#include <filesystem>
+
+#include <CLI/App.hpp>
+
+#include "halflight/base/result.h"
+#include "halflight/solve/checkpoint.h"
+
+namespace halflight::app {
+
+struct CheckpointArguments {
+  std::filesystem::path path;
+  std::filesystem::path scene;  // empty: where it was
+};
+
+// `arguments` must live until the command has run.
+void add_checkpoint_arguments(CLI::App& command, CheckpointArguments& arguments);
+// --scene alone.
+CLI::Option* add_scene_of_checkpoint(CLI::App& command, std::filesystem::path& scene);
+
+// The solution over a world made from the checkpoint's scene, with light groups taken apart.
+Result<SolverState> restore(const Checkpoint& checkpoint,
+                            const std::shared_ptr<const World>& world);
+// The solution over its scene, warnings of which are printed.
+Result<SolverState> restore(const CheckpointArguments& arguments);
+
+}  // namespace halflight::app

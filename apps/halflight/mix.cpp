@@ -1,0 +1,115 @@
+// halflight mix CHECKPOINT --group NAME=FACTOR: dims and recolours lights without solving again.
+#include <charconv>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "checkpoint_arguments.h"
+#include "commands.h"
+#include "halflight/base/parallel.h"
+#include "halflight/solve/mix.h"
+#include "lit_output.h"
+#include "sensor_arguments.h"
+#include "terminal_progress.h"
+
+namespace halflight::app {
+namespace {
+
+struct MixArguments {
+  CheckpointArguments checkpoint;
+  std::vector<std::string> groups;
+  SensorArguments sensors;
+  std::filesystem::path lit;
+  int threads = 0;
+};
+
+// One number for all channels, or three with commas between.
+bool parse_factor(std::string_view text, Rgb& factor) {
+  int count = 0;
+  while (count < 3) {
+    const std::size_t end = std::min(text.find(','), text.size());
+    float& value = factor[count++];
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + end, value);
+    if (error != std::errc() || stop != text.data() + end || !std::isfinite(value) || value < 0.f)
+      return false;
+    if (end == text.size()) break;
+    text.remove_prefix(end + 1);
+    if (count == 3) return false;
+  }
+  if (count == 1) factor = Rgb(factor.r);
+  return count != 2;
+}
+
+std::string names_of(const std::vector<LightGroup>& groups) {
+  std::string names;
+  for (const LightGroup& g : groups) names += (names.empty() ? "" : ", ") + g.name;
+  return names;
+}
+
+// Groups that are not named stay as the scene says.
+Result<std::vector<Rgb>> factors_of(const MixArguments& arguments,
+                                    const std::vector<LightGroup>& groups) {
+  std::vector<Rgb> factors(groups.size(), Rgb(1.f));
+  for (const std::string& text : arguments.groups) {
+    const std::size_t equals = text.rfind('=');
+    Rgb factor(1.f);
+    if (equals == std::string::npos ||
+        !parse_factor(std::string_view(text).substr(equals + 1), factor))
+      return input_error(fmt::format("'{}' is not a group and its factor", text), "--group",
+                         "write NAME=0.5 or NAME=1,0.8,0.6");
+    std::size_t g = 0;
+    while (g < groups.size() && groups[g].name != text.substr(0, equals)) ++g;
+    if (g == groups.size())
+      return input_error(fmt::format("there is no light group '{}'", text.substr(0, equals)),
+                         "--group", fmt::format("the checkpoint has {}", names_of(groups)));
+    factors[g] = factor;
+  }
+  return factors;
+}
+
+Result<void> mix_groups(const MixArguments& arguments) {
+  const auto sensors = read_sensors(arguments.sensors);
+  if (!sensors) return tl::unexpected(sensors.error());
+  Result<SolverState> state = restore(arguments.checkpoint);
+  if (!state) return tl::unexpected(state.error());
+  if (state->grouped.groups.empty())
+    return input_error("the checkpoint has no light groups", arguments.checkpoint.path.string(),
+                       "solve with --light-groups");
+  const auto factors = factors_of(arguments, state->grouped.groups);
+  if (!factors) return tl::unexpected(factors.error());
+  relight(*state, *factors);
+  mix(*state, *factors);
+  if (!sensors->empty())
+    if (auto written = write_irradiance(arguments.sensors, *state, *sensors); !written)
+      return written;
+  if (arguments.lit.empty()) return {};
+  Report report;
+  return write_lit(arguments.lit, *state, report, Progress(terminal_progress()));
+}
+
+}  // namespace
+
+void add_mix(CLI::App& cli, int& status) {
+  auto arguments = std::make_shared<MixArguments>();
+  CLI::App& command = *cli.add_subcommand("mix", "dims and recolours the lights of a solved scene");
+  add_checkpoint_arguments(command, arguments->checkpoint);
+  command
+      .add_option("--group", arguments->groups,
+                  "multiplies the light of a group by a number or by r,g,b; may be repeated")
+      ->type_name("NAME=FACTOR")
+      ->expected(1)
+      ->take_all();
+  add_sensor_arguments(command, arguments->sensors);
+  command.add_option("-o,--output", arguments->lit, "lit scene, GLB")->type_name("lit.glb");
+  command.add_option("--threads", arguments->threads, "0: all cores")
+      ->check(CLI::Range(0, 4096).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command.callback([arguments, &status] {
+    set_thread_count(arguments->threads);
+    const Result<void> done = mix_groups(*arguments);
+    status = done ? kGoalMet : fail(done.error());
+  });
+}
+
+}  // namespace halflight::app

@@ -1,0 +1,44 @@
+// halflight sample CHECKPOINT --points FILE: irradiance at sensors of a scene that was solved.
+#include <memory>
+
+#include "checkpoint_arguments.h"
+#include "commands.h"
+#include "halflight/base/parallel.h"
+#include "sensor_arguments.h"
+
+namespace halflight::app {
+namespace {
+
+struct SampleArguments {
+  CheckpointArguments checkpoint;
+  SensorArguments sensors;
+  int threads = 0;
+};
+
+Result<void> sample(const SampleArguments& arguments) {
+  const auto sensors = read_sensors(arguments.sensors);
+  if (!sensors) return tl::unexpected(sensors.error());
+  const Result<SolverState> state = restore(arguments.checkpoint);
+  if (!state) return tl::unexpected(state.error());
+  return write_irradiance(arguments.sensors, *state, *sensors);
+}
+
+}  // namespace
+
+void add_sample(CLI::App& cli, int& status) {
+  auto arguments = std::make_shared<SampleArguments>();
+  CLI::App& command = *cli.add_subcommand("sample", "irradiance at sensors of a solved scene");
+  add_checkpoint_arguments(command, arguments->checkpoint);
+  add_sensor_arguments(command, arguments->sensors)->required();
+  command.add_option("--threads", arguments->threads, "0: all cores")
+      ->check(CLI::Range(0, 4096).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command.callback([arguments, &status] {
+    set_thread_count(arguments->threads);
+    const Result<void> done = sample(*arguments);
+    status = done ? kGoalMet : fail(done.error());
+  });
+}
+
+}  // namespace halflight::app

@@ -1,0 +1,31 @@
+// --points and --points-out, and the light of a solution at what they name.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include <CLI/App.hpp>
+
+#include "halflight/base/result.h"
+#include "halflight/io/sensors.h"
+#include "halflight/solve/solver.h"
+
+namespace halflight::app {
+
+struct SensorArguments {
+  std::filesystem::path points;
+  std::filesystem::path points_out;
+};
+
+// Returns the option --points. `arguments` must live until the command has run.
+CLI::Option* add_sensor_arguments(CLI::App& command, SensorArguments& arguments);
+
+// None without --points.
+Result<std::vector<Sensor>> read_sensors(const SensorArguments& arguments);
+
+// Writes the irradiance at the sensors.
+Result<void> write_irradiance(const SensorArguments& arguments, const SolverState& state,
+                              std::span<const Sensor> sensors);
+
+}  // namespace halflight::app
