@@ -48,7 +48,8 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
   SolveOutcome outcome;
   outcome.goal_met = run_schedule(state, goals, deadline, progress, after_iteration);
   if (!goals.error && !(wants_error && outcome.goal_met)) return outcome;
-  if (progress.cancelled()) return outcome;
+  // No time is left to measure in.
+  if (progress.cancelled() || (deadline.set() && !outcome.goal_met)) return outcome;
   const ErrorProbes probes(state);
   outcome.error = probes.measure(state);
   if (!goals.error) return outcome;
