@@ -58,13 +58,14 @@ bool sees_only_itself(const Geometry& g, const RayScene& rays, const Bodies& bod
                       bool back) {
   const auto& members = bodies.members[id];
   const float size = bounds_of(g, members).diagonal();
+  const float reach = size + 4.f * rays.lift_distance();  // beyond it nothing is of this body
   for (std::uint32_t i = 0; i < scaled_to(size, g, kRaysPerBody); ++i) {
     const std::uint64_t seed = hash(id.value, i, back);
     const TriangleId t = members[seed % members.size()];
     const auto [a, b, c] = g.corners(t);
     const Vec3 n = glm::normalize(g.scaled_normal(t)) * (back ? -1.f : 1.f);
     const Vec3 p = rays.lift((a + b + c) / 3.f, n);
-    const auto hit = rays.closest_hit(p, direction_about(n, i, id.value), kInfinity, seed);
+    const auto hit = rays.closest_hit(p, direction_about(n, i, id.value), reach, seed);
     if (!hit || bodies.of_triangle[hit->triangle] != id || hit->front == back) return false;
   }
   return true;
@@ -79,6 +80,7 @@ bool is_sealed_off(const Scene& scene, const Geometry& g, const RayScene& rays,
   const Bounds3f box = bounds_of(g, members);
   if (box.diagonal() > kLargestChamber * g.bounds.diagonal()) return false;
   const Vec3 margin(4.f * rays.lift_distance());
+  const float reach = box.diagonal() + 4.f * glm::length(margin);  // who gets so far has left it
   for (std::uint32_t i = 0; i < scaled_to(box.diagonal(), g, kWalks); ++i) {
     const TriangleId start = members[hash(id.value, i, back, 1) % members.size()];
     const auto [a, b, c] = g.corners(start);
@@ -86,8 +88,7 @@ bool is_sealed_off(const Scene& scene, const Geometry& g, const RayScene& rays,
     Vec3 n = glm::normalize(g.scaled_normal(start)) * (back ? -1.f : 1.f);
     for (int step = 0; step < kStepsOfWalk; ++step) {
       const std::uint64_t seed = hash(id.value, i, back, step + 2);
-      const auto hit =
-          rays.closest_hit(rays.lift(p, n), direction_about(n, 0, seed), kInfinity, seed);
+      const auto hit = rays.closest_hit(rays.lift(p, n), direction_about(n, 0, seed), reach, seed);
       if (!hit || scene.materials[g.materials[hit->triangle]].emits()) return false;
       p = hit_position(g, *hit);
       n = hit_normal(g, *hit);
