@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -56,8 +57,8 @@ Result<void> check_rules(const std::vector<FeatureSizeRule>& rules, const World&
 
 FeatureSizes::FeatureSizes(const World& world, const Surfaces& surfaces, float otherwise,
                            const std::vector<FeatureSizeRule>& rules,
-                           const std::optional<PixelFeatureSize>& pixels)
-    : surfaces_(&surfaces), otherwise_(otherwise), pixels_(pixels) {
+                           std::optional<PixelFeatureSize> pixels)
+    : otherwise_(otherwise), pixels_(std::move(pixels)) {
   if (rules.empty()) return;
   by_rule_ = IdVector<SurfaceId, float>(surfaces.surfaces.size(), kNone);
   for (std::size_t i = 0; i < by_rule_.size(); ++i)

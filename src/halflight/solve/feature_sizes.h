@@ -32,8 +32,7 @@ Result<void> check_rules(const std::vector<FeatureSizeRule>& rules, const World&
 class FeatureSizes {
  public:
   FeatureSizes(const World& world, const Surfaces& surfaces, float otherwise,
-               const std::vector<FeatureSizeRule>& rules,
-               const std::optional<PixelFeatureSize>& pixels);
+               const std::vector<FeatureSizeRule>& rules, std::optional<PixelFeatureSize> pixels);
 
   float of_cell(const Element& cell) const;
   // Of all elements of a tree that has not been split yet.
@@ -42,7 +41,6 @@ class FeatureSizes {
  private:
   float at_distance(const Bounds3f& box) const;
 
-  const Surfaces* surfaces_;
   float otherwise_;
   IdVector<SurfaceId, float> by_rule_;  // negative: none; empty: no rules
   std::optional<PixelFeatureSize> pixels_;

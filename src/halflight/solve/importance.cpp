@@ -28,8 +28,8 @@ std::vector<RayHit> seen_surfaces(const World& world, const ViewOfInterest& view
   const auto rows = static_cast<std::size_t>(view.height / step);
   return parallel_collect<RayHit>(
       columns * rows, 256, [&](std::size_t i, std::vector<RayHit>& hits) {
-        const Vec2 pixel(static_cast<double>(i % columns) + 0.5,
-                         static_cast<double>(i / columns) + 0.5);
+        const std::size_t row = i / columns, column = i % columns;
+        const Vec2 pixel(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f);
         const CameraRay ray = camera.through(static_cast<float>(step) * pixel);
         if (const auto hit = world.rays.closest_hit(ray.origin, ray.direction, kInfinity, hash(i)))
           hits.push_back(*hit);
