@@ -80,6 +80,27 @@ TEST_F(SolveCommand, ErrorIsMeasuredAndMet) {
   EXPECT_GT(report["estimated_error_noise"].get<double>(), 0.0);
 }
 
+TEST_F(SolveCommand, OptionsMayStandBeforeTheScene) {
+  EXPECT_EQ(run("solve --links refined --links 1M --importance auto --feature-size 50cm "
+                "--progress none --report r.json room.obj"),
+            0)
+      << text("err");
+  EXPECT_EQ(read_json(path("r.json"))["settings"]["links"], "refined");
+}
+
+TEST_F(SolveCommand, RulesGiveMaterialsTheirFeatureSize) {
+  folder_.write("rules.toml", "[[rule]]\nmaterial = \"wall\"\nfeature-size = \"10cm\"\n");
+  ASSERT_EQ(run("solve room.obj --feature-size 50cm --progress none --report a.json"), 0);
+  ASSERT_EQ(run("solve room.obj --feature-size 50cm --feature-sizes rules.toml --progress none "
+                "--report b.json"),
+            0);
+  EXPECT_GT(read_json(path("b.json"))["elements"].get<int>(),
+            read_json(path("a.json"))["elements"].get<int>());
+  folder_.write("rules.toml", "[[rule]]\nmaterial = \"glass\"\nfeature-size = \"10cm\"\n");
+  EXPECT_EQ(run("solve room.obj --feature-sizes rules.toml --progress none --report c.json"), 1);
+  EXPECT_NE(text("err").find("glass"), std::string::npos);
+}
+
 TEST_F(SolveCommand, UnreachableErrorEndsWithABudgetStatus) {
   EXPECT_EQ(run("solve room.obj --feature-size 1 --error 0.01% --links 30k --progress none "
                 "--report r.json --points sensors.txt --points-out out.txt"),
@@ -89,14 +110,28 @@ TEST_F(SolveCommand, UnreachableErrorEndsWithABudgetStatus) {
 }
 
 TEST_F(SolveCommand, RejectsBadUseInOneLine) {
-  for (const char* arguments :
-       {"solve missing.obj", "solve room.obj --feature-size huge",
-        "solve room.obj --feature-size -1", "solve room.obj --visibility blurred",
-        "solve room.obj --error 0%", "solve room.obj --error x", "solve room.obj --time soon",
-        "solve room.obj --links woven", "solve room.obj --threads -1", "solve room.obj --unit mile",
-        "solve room.obj --up x", "solve room.obj --points missing.txt", "solve room.obj --sky 1,2",
-        "solve", "solve room.obj --sky -1,0,0", "solve room.obj --no-such-option",
-        "solve room.obj --feature-size nan", "solve room.obj --feature-size inf"}) {
+  for (const char* arguments : {"solve missing.obj",
+                                "solve room.obj --feature-size huge",
+                                "solve room.obj --feature-size -1",
+                                "solve room.obj --visibility blurred",
+                                "solve room.obj --error 0%",
+                                "solve room.obj --error x",
+                                "solve room.obj --time soon",
+                                "solve room.obj --links woven",
+                                "solve room.obj --threads -1",
+                                "solve room.obj --unit mile",
+                                "solve room.obj --up x",
+                                "solve room.obj --points missing.txt",
+                                "solve room.obj --sky 1,2",
+                                "solve",
+                                "solve room.obj --sky -1,0,0",
+                                "solve room.obj --no-such-option",
+                                "solve room.obj --feature-size nan",
+                                "solve room.obj --feature-size 3px@",
+                                "solve room.obj --feature-size xpx@auto",
+                                "solve room.obj --importance nowhere",
+                                "solve room.obj --feature-sizes none.toml",
+                                "solve room.obj --feature-size inf"}) {
     EXPECT_EQ(run(std::string(arguments) + " --progress none -o lit.glb"), 1) << arguments;
     const std::string err = text("err");
     EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << arguments << "\n" << err;

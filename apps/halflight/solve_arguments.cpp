@@ -38,6 +38,7 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
       .add_option("--links", arguments.links,
                   "refined: by the error oracle alone; sampled: by rays on the elements it shaped "
                   "(the default); N: no more than these")
+      ->allow_extra_args(false)  // one for each --links
       ->type_name("refined|sampled|N");
   command
       .add_option("--importance", arguments.importance,
