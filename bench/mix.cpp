@@ -20,8 +20,7 @@ SolverState split_up(std::size_t elements, std::size_t groups) {
   options.feature_size = 0.05f;
   SolverState state = make_state(make_world(office_scene({100, 1})), options);
   for (std::size_t i = 0; state.tree.size() < elements; ++i)
-    if (const ElementId e(i); !state.tree[e].is_cluster() && state.tree[e].is_leaf())
-      state.tree.split(e);
+    if (const ElementId e(i); state.tree[e].is_leaf_cell()) state.tree.split(e);
   const std::size_t n = state.tree.size();
   state.reflectance = IdVector<ElementId, Rgb>(n, Rgb(0.5f));
   state.exitance.resize(n);

@@ -86,7 +86,7 @@ struct BookCells {
     while (!open.empty()) {
       const ElementId e = open.back();
       open.pop_back();
-      if (!tree[e].is_cluster() && tree[e].is_leaf() && tree.cell_size(e) > kCell) tree.split(e);
+      if (tree[e].is_leaf_cell() && tree.cell_size(e) > kCell) tree.split(e);
       for (const ElementId child : tree[e].children()) open.push_back(child);
       if (tree[e].is_leaf()) items.push_back(e);
     }

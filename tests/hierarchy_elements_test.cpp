@@ -137,7 +137,7 @@ TEST(ElementTreeTest, FindsTheCellThatAPointWasSampledFrom) {
   std::size_t tried = 0, found = 0;
   for (std::size_t i = 0; i < tree.size(); ++i) {
     const Element& cell = tree[ElementId(i)];
-    if (cell.is_cluster() || !cell.is_leaf()) continue;
+    if (!cell.is_leaf_cell()) continue;
     const CellPoint p = tree.sample(ElementId(i), random_shift(hash(i, 5)));
     const Surface& surface = tree.surfaces()[cell.side];
     EXPECT_LT(std::abs(glm::dot(p.position - surface.origin, surface.normal)), 1e-4f);

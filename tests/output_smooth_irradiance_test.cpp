@@ -19,7 +19,7 @@ SolverState floor_with(const F& light_at) {
   SolverState state = make_state(make_world(quads.scene), {.feature_size = 0.1f});
   ElementTree& tree = state.tree;
   for (std::size_t i = 0; i < tree.size() && tree.size() < 500; ++i)
-    if (!tree[ElementId(i)].is_cluster() && tree[ElementId(i)].is_leaf()) tree.split(ElementId(i));
+    if (tree[ElementId(i)].is_leaf_cell()) tree.split(ElementId(i));
   state.irradiance.resize(tree.size(), Rgb(0.f));
   for (std::size_t i = 0; i < tree.size(); ++i)
     state.irradiance[ElementId(i)] = Rgb(light_at(tree[ElementId(i)].center()));
@@ -31,7 +31,7 @@ void for_points_of_the_floor(const SolverState& state, const F& visit) {
   const ElementTree& tree = state.tree;
   for (std::size_t i = 0; i < tree.size(); ++i) {
     const ElementId leaf(i);
-    if (tree[leaf].is_cluster() || !tree[leaf].is_leaf() || tree[leaf].center().y > 1.f) continue;
+    if (!tree[leaf].is_leaf_cell() || tree[leaf].center().y > 1.f) continue;
     for (std::uint32_t k = 0; k < 16; ++k) visit(leaf, tree.sample(leaf, r2_sequence(k)).position);
   }
 }

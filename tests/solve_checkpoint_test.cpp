@@ -182,7 +182,7 @@ TEST_P(StoredSolve, NonsenseIsNeverTakenForAState) {
   expect_refused("more cells than values", [](SolverState& s) {
     for (std::size_t i = 0;; ++i) {
       const Element& e = s.tree[ElementId(i)];
-      if (e.is_cluster() || !e.is_leaf()) continue;
+      if (!e.is_leaf_cell()) continue;
       s.tree.split(ElementId(i));
       return;
     }

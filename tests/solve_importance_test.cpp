@@ -121,8 +121,7 @@ TEST(Importance, KeepsTheViewForLess) {
   const Geometry& g = world->geometry;
   for (std::size_t i = 0; i < seen.seen.size(); i += seen.seen.size() / 200) {
     const RayHit& hit = seen.seen[i];
-    const Vec3 n = glm::normalize(g.scaled_normal(hit.triangle));
-    points.push_back({hit_position(g, hit), hit.front ? n : -n, hit.triangle});
+    points.push_back({hit_position(g, hit), hit_normal(g, hit), hit.triangle});
   }
   const auto a = testing::read_irradiance(whole, points),
              b = testing::read_irradiance(seen, points);

@@ -136,8 +136,7 @@ TEST(LightGroups, DimGroupsAreRefinedAsWell) {
     for (std::size_t i = 0; i < state.tree.size(); ++i) {
       const Element& e = state.tree[ElementId(i)];
       const Vec3 c = e.center();
-      count += e.is_leaf() && !e.is_cluster() && c.y < 1e-3f && c.x > 1.f && c.x < 3.f &&
-               c.z > 1.f && c.z < 3.f;
+      count += e.is_leaf_cell() && c.y < 1e-3f && c.x > 1.f && c.x < 3.f && c.z > 1.f && c.z < 3.f;
     }
     return count;
   };

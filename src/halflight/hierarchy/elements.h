@@ -32,6 +32,7 @@ struct Element {
 
   bool is_cluster() const { return !side.valid(); }
   bool is_leaf() const { return child_count == 0; }
+  bool is_leaf_cell() const { return is_leaf() && !is_cluster(); }
   IdRange<ElementId> children() const { return {first_child, first_child + child_count}; }
   Vec3 center() const { return box.center(); }
   float diameter() const { return box.diagonal(); }

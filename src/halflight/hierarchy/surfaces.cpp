@@ -148,7 +148,7 @@ Surfaces build_surfaces(const Geometry& g) {
   const auto neighbours = manifold_neighbours(g, welded);
 
   std::vector<float> area(n);
-  for (std::size_t i = 0; i < n; ++i) area[i] = 0.5f * glm::length(g.scaled_normal(TriangleId(i)));
+  for (std::size_t i = 0; i < n; ++i) area[i] = g.area(TriangleId(i));
   std::vector<std::uint32_t> largest_first(n);
   std::iota(largest_first.begin(), largest_first.end(), 0u);
   std::stable_sort(largest_first.begin(), largest_first.end(),

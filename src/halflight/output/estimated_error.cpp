@@ -24,8 +24,7 @@ std::vector<ReadingPoint> scatter_over_view(const SolverState& state, std::size_
   const std::size_t step = std::max<std::size_t>(1, state.seen.size() / count);
   for (std::size_t i = step / 2; i < state.seen.size(); i += step) {
     const RayHit& hit = state.seen[i];
-    const Vec3 n = glm::normalize(g.scaled_normal(hit.triangle));
-    points.push_back({hit_position(g, hit), hit.front ? n : -n, hit.triangle});
+    points.push_back({hit_position(g, hit), hit_normal(g, hit), hit.triangle});
   }
   return points;
 }

@@ -21,7 +21,7 @@ Rgb mean_irradiance(const WorkMesh& mesh, const Geometry& g) {
   };
   const Sum sum = parallel_sum<Sum>(mesh.sheets.size(), 4096, {}, [&](std::size_t i) {
     const Sheet& s = mesh.sheets[SheetId(i)];
-    const double area = 0.5 * glm::length(g.scaled_normal(s.source));
+    const double area = g.area(s.source);
     glm::dvec3 light(0.0);
     for (const LitVertexId v : s.corners)
       light += glm::dvec3(mesh.sites[mesh.site(v)].light.irradiance()) / 3.0;

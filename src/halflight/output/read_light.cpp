@@ -22,7 +22,7 @@ std::vector<EmittingSide> find_bright_reflectors(const SolverState& state,
   double power = 0.0, area = 0.0;
   for (std::size_t i = 0; i < tree.size(); ++i) {
     const ElementId e(i);
-    if (tree[e].is_cluster() || !tree[e].is_leaf()) continue;
+    if (!tree[e].is_leaf_cell()) continue;
     const float reflected = average(state.reflectance[e] * state.irradiance[e]);
     if (!(reflected > 0.f)) continue;
     power += static_cast<double>(tree[e].area * reflected);
@@ -44,8 +44,7 @@ std::vector<EmittingSide> find_bright_reflectors(const SolverState& state,
       emitter.triangle = state.surfaces->triangles[s.first_triangle + k];
       emitter.back = is_back(side);
       emitter.radiance = reflected / kPi;
-      emitter.power =
-          average(emitter.radiance) * 0.5f * glm::length(g.scaled_normal(emitter.triangle));
+      emitter.power = average(emitter.radiance) * g.area(emitter.triangle);
       bright.push_back(emitter);
     }
   }

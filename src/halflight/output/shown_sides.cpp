@@ -47,8 +47,7 @@ Pieces connected_pieces(const Geometry& g, const SharedEdges& edges) {
 void add_samples(const Geometry& g, std::span<const TriangleId> piece, float feature_size,
                  std::vector<ReadingPoint>& out) {
   std::vector<double> area_before(1, 0.0);
-  for (const TriangleId t : piece)
-    area_before.push_back(area_before.back() + 0.5 * glm::length(g.scaled_normal(t)));
+  for (const TriangleId t : piece) area_before.push_back(area_before.back() + g.area(t));
   const bool is_small = area_before.back() < static_cast<double>(feature_size * feature_size);
   const std::size_t samples = is_small ? std::min<std::size_t>(2, piece.size()) : kMostSamples;
   for (std::size_t i = 0; i < samples; ++i) {

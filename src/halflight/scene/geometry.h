@@ -75,6 +75,7 @@ struct Geometry {
     const auto [a, b, c] = corners(t);
     return a + weights.x * (b - a) + weights.y * (c - a);
   }
+  float area(TriangleId t) const { return 0.5f * glm::length(scaled_normal(t)); }
   // Weights of the 2nd and 3rd corner at a point in the triangle's plane.
   Vec2 barycentric(TriangleId t, const Vec3& p) const {
     const auto [a, b, c] = corners(t);

@@ -33,7 +33,7 @@ IdVector<MaterialId, MaterialSums> sum_emission(const Scene& scene, const Geomet
     const TriangleId t(i);
     const Material& m = scene.materials[g.materials[t]];
     if (!m.emits()) continue;
-    const double area = 0.5 * static_cast<double>(glm::length(g.scaled_normal(t)));
+    const double area = static_cast<double>(g.area(t));
     MaterialSums& sum = sums[g.materials[t]];
     ++sum.triangles;
     sum.area += area;
@@ -61,7 +61,7 @@ AreaSum sum_reflectance(const Scene& scene, const Geometry& g) {
     const TriangleId t(i);
     const Material& m = scene.materials[g.materials[t]];
     AreaSum sum;
-    sum.area = 0.5 * static_cast<double>(glm::length(g.scaled_normal(t)));
+    sum.area = static_cast<double>(g.area(t));
     if (m.emits()) return sum;
     sum.reflecting = sum.area;
     sum.reflectance =

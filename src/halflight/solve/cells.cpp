@@ -73,7 +73,7 @@ float finest_cell(const SolverState& state) {
 }
 
 float smallest_cell(const SolverState& state, ElementId cell) {
-  return std::max(0.5f * state.feature_sizes[cell], finest_cell(state));
+  return smallest_cell(state.feature_sizes[cell], finest_cell(state));
 }
 
 void evaluate_material(SolverState& state, ElementId cell) {
@@ -154,22 +154,23 @@ void give_light_to_side(SolverState& state, ElementId side, const Rgb& of_emitte
 
 }  // namespace
 
-void give_light_to_clusters(SolverState& state, const EmitterTree& emitters,
-                            const std::vector<ElementId>& receivers,
-                            const SampledLinkOptions& options) {
+void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& receivers) {
+  const ClusterVisibility* inside = state.inside.get();
   parallel_for(receivers.size(), 16, [&](std::size_t i) {
     const ElementTree& tree = state.tree;
     const ElementId receiver = receivers[i];
     if (!tree[receiver].is_cluster()) return;
     // Too near for one light on all: its cells are lit one by one.
     if (max_component(state.exitance[receiver]) > 0.f) return;
-    SampledLinkOptions own = options;
-    own.feature_size = state.feature_sizes[receiver];
-    const DirectLight light = sample_direct_light(tree, *state.visibility, emitters, receiver, own);
-    if (options.inside && options.inside->knows(receiver)) {
-      const auto items = options.inside->items(receiver);
-      const std::vector<Rgb> of_emitters = hand_out(*options.inside, receiver, light.of_emitters);
-      const std::vector<Rgb> outer = hand_out(*options.inside, receiver, light.from_outside);
+    SampledLinkOptions options;
+    options.inside = inside;
+    options.feature_size = state.feature_sizes[receiver];
+    const DirectLight light =
+        sample_direct_light(tree, *state.visibility, *state.emitters, receiver, options);
+    if (inside && inside->knows(receiver)) {
+      const auto items = inside->items(receiver);
+      const std::vector<Rgb> of_emitters = hand_out(*inside, receiver, light.of_emitters);
+      const std::vector<Rgb> outer = hand_out(*inside, receiver, light.from_outside);
       for (std::size_t k = 0; k < items.size(); ++k)
         give_light_to_side(state, items[k].cell, of_emitters[k], outer[k]);
       return;
@@ -195,8 +196,7 @@ void update_given_light(SolverState& state, float irradiance_threshold) {
   std::vector<ElementId> open;
   for (std::size_t i = 0; i < state.tree.size(); ++i) {
     const ElementId e(i);
-    if (!state.tree[e].is_cluster() && state.tree[e].is_leaf() && !state.given_light_known[e])
-      open.push_back(e);
+    if (state.tree[e].is_leaf_cell() && !state.given_light_known[e]) open.push_back(e);
   }
   const float scene_area = state.tree[state.tree.root()].area;
   while (!open.empty()) {

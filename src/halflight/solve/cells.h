@@ -22,9 +22,7 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells);
 
 // Evaluates the light that sampled links do not carry on the cells of receiving clusters, by one
 // directional irradiance for each cluster. Clusters that hold emitters are left out.
-void give_light_to_clusters(SolverState& state, const EmitterTree& emitters,
-                            const std::vector<ElementId>& receivers,
-                            const SampledLinkOptions& options);
+void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& receivers);
 
 // Evaluates the light that links do not carry on all leaf cells where it is not known yet, and
 // splits cells on which it varies by more than the threshold (as in RefineOptions).

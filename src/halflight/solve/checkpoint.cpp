@@ -36,7 +36,7 @@ std::vector<ElementId> splits_of(const ElementTree& tree) {
 
 bool replay(ElementTree& tree, const std::vector<ElementId>& splits) {
   for (const ElementId e : splits) {
-    if (e.value >= tree.size() || tree[e].is_cluster() || !tree[e].is_leaf()) return false;
+    if (e.value >= tree.size() || !tree[e].is_leaf_cell()) return false;
     tree.split(e);
     if (tree[e].is_leaf()) return false;
   }

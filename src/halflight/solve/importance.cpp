@@ -55,7 +55,7 @@ IdVector<ElementId, float> solve_importance(const SolverState& state,
     for (std::size_t i = tree.size(); i-- > 0;) {
       const ElementId e(i);
       of_irradiance[e] = 0.f;
-      if (tree[e].is_leaf() && !tree[e].is_cluster())
+      if (tree[e].is_leaf_cell())
         of_irradiance[e] = average(state.reflectance[e]) * of_radiosity[e];
       for (const ElementId child : tree[e].children()) of_irradiance[e] += of_irradiance[child];
     }
@@ -76,7 +76,7 @@ IdVector<ElementId, float> solve_importance(const SolverState& state,
   }
   for (std::size_t i = tree.size(); i-- > 0;) {
     const ElementId e(i);
-    if (tree[e].is_leaf() && !tree[e].is_cluster()) {
+    if (tree[e].is_leaf_cell()) {
       const float density = average(state.reflectance[e]) * of_radiosity[e] * seen_area /
                             std::max(tree[e].area, 1e-30f);
       importance[e] = direct[e] > 0.f ? 1.f : std::clamp(density, kLeastImportance, 1.f);

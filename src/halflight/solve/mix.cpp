@@ -12,13 +12,7 @@ namespace halflight {
 namespace {
 
 constexpr std::size_t kGrain = 1024;
-constexpr float kSweepTolerance = 2e-4f;
-constexpr int kMostSweeps = 60;
 constexpr float kLargestFactor = 1e6f;  // by which a group is made brighter to be balanced
-
-bool is_leaf_cell(const ElementTree& tree, ElementId e) {
-  return !tree[e].is_cluster() && tree[e].is_leaf();
-}
 
 // Of each material, the group that it shines with; the number of groups: none.
 IdVector<MaterialId, std::size_t> groups_of_materials(const SolverState& state) {
@@ -49,15 +43,13 @@ GroupLight light_of_one(SolverState& state) {
   state.irradiance = IdVector<ElementId, Rgb>(n, Rgb(0.f));
   pull(state);  // exitance of clusters
   if (state.emitters) {
-    SampledLinkOptions options;
-    options.inside = state.inside.get();
     std::vector<ElementId> receivers =
         choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes);
     std::erase_if(receivers, [&](ElementId e) { return state.sampled[e] == 0; });
-    give_light_to_clusters(state, *state.emitters, receivers, options);
+    give_light_to_clusters(state, receivers);
   }
   update_given_light(state, kInfinity);  // splits nothing
-  sweep(state, kSweepTolerance, kMostSweeps);
+  sweep(state);
   return {std::move(state.given_light), std::move(state.irradiance)};
 }
 
@@ -65,7 +57,7 @@ float mean_of_leaves(const ElementTree& tree, const IdVector<ElementId, Rgb>& ir
   double power = 0.0, area = 0.0;
   for (std::size_t i = 0; i < tree.size(); ++i) {
     const ElementId e(i);
-    if (!is_leaf_cell(tree, e)) continue;
+    if (!tree[e].is_leaf_cell()) continue;
     power += static_cast<double>(tree[e].area * average(irradiance[e]));
     area += static_cast<double>(tree[e].area);
   }

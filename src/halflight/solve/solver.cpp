@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
+#include <ranges>
 #include <utility>
 
 #include "halflight/base/hash.h"
@@ -29,8 +30,6 @@ constexpr float kThresholdRatio = 4.f;  // between levels
 constexpr float kFirstThreshold = 16.f;
 constexpr float kBlindCells = 8.f;  // RefineOptions::largest_blind_cell in feature sizes
 constexpr float kLeastTolerance = 0.15f;
-constexpr float kSweepTolerance = 2e-4f;
-constexpr int kMostSweeps = 60;
 // Errors below this take more rays for each receiver, in proportion.
 constexpr float kErrorOfPlainSampling = 0.05f;
 constexpr float kMostOversampling = 8.f;
@@ -64,7 +63,7 @@ float first_guess_of_irradiance(const SolverState& state) {
   double power = 0.0;
   for (std::size_t i = 0; i < state.tree.size(); ++i) {
     const ElementId e(i);
-    if (!state.tree[e].is_cluster() && state.tree[e].is_leaf())
+    if (state.tree[e].is_leaf_cell())
       power += static_cast<double>(state.tree[e].area *
                                    average(state.exitance[e] + state.given_light[e]));
   }
@@ -92,6 +91,13 @@ void update_tolerance(SolverState& state, float mean) {
   }
 }
 
+// What matters less to the view may be further off.
+void weigh_by_importance(SolverState& state) {
+  state.importance = solve_importance(state, state.seen);
+  for (std::size_t i = 0; i < state.tree.size(); ++i)
+    state.tolerance[ElementId(i)] /= std::sqrt(state.importance[ElementId(i)]);
+}
+
 // Levels whose links are refined; with sampled links the last one only shapes elements.
 int levels_of_links(const SolveOptions& options) {
   return options.levels - (options.links == LinkMaker::sampled ? 1 : 0);
@@ -99,20 +105,20 @@ int levels_of_links(const SolveOptions& options) {
 
 // Threshold and tolerances of the level that comes next, by the light that is there now.
 void begin_level(SolverState& state) {
-  const bool first = state.history.empty();
-  if (first) update_given_light(state, kInfinity);
-  const float mean = first ? first_guess_of_irradiance(state) : mean_irradiance(state);
-  if (!first) update_tolerance(state, mean);
-  if (!first && state.options.importance) {
-    state.importance = solve_importance(state, state.seen);
-    for (std::size_t i = 0; i < state.tree.size(); ++i)
-      state.tolerance[ElementId(i)] /= std::sqrt(state.importance[ElementId(i)]);
+  float mean = 0.f;
+  if (state.history.empty()) {
+    update_given_light(state, kInfinity);
+    mean = first_guess_of_irradiance(state);
+    pull(state);
+  } else {
+    mean = mean_irradiance(state);
+    update_tolerance(state, mean);
+    if (state.options.importance) weigh_by_importance(state);
   }
   const int levels_left = state.options.levels - 1 - state.schedule.level;
   state.schedule.irradiance_threshold =
       kThresholdPerError * state.options.error * mean *
       std::pow(kThresholdRatio, static_cast<float>(std::max(0, levels_left)));
-  if (first) pull(state);
 }
 
 // Error of a link in units of what its receiver tolerates at this level. Links whose source was
@@ -126,14 +132,6 @@ float relative_error(const SolverState& state, const ReceiverLink& l) {
   return awakened ? std::max(error, std::nextafter(1.f, 2.f)) : error;
 }
 
-std::vector<float> relative_errors(const SolverState& state,
-                                   const std::vector<ReceiverLink>& links) {
-  std::vector<float> errors(links.size());
-  parallel_for(links.size(), 4096,
-               [&](std::size_t i) { errors[i] = relative_error(state, links[i]); });
-  return errors;
-}
-
 struct WorstLinks {
   std::vector<ReceiverLink> links;  // in receiver order
   std::vector<ReceiverLink> others;
@@ -144,7 +142,9 @@ struct WorstLinks {
 // The k links of the largest errors above the level's threshold, to within a bin of the histogram.
 WorstLinks find_worst_links(const SolverState& state, const std::vector<ReceiverLink>& links,
                             std::size_t k) {
-  const std::vector<float> errors = relative_errors(state, links);
+  std::vector<float> errors(links.size());
+  parallel_for(links.size(), 4096,
+               [&](std::size_t i) { errors[i] = relative_error(state, links[i]); });
   ErrorHistogram histogram;
   for (const float e : errors)
     if (e > 1.f) histogram.add(e);
@@ -165,12 +165,15 @@ std::vector<ElementPair> pairs_of(const std::vector<ReceiverLink>& links) {
   return pairs;
 }
 
-// Of the links that do not hold at this level; they stay.
-std::vector<ElementPair> failing_pairs(SolverState& state) {
-  const std::vector<ReceiverLink> links = state.links.release();
-  std::vector<ElementPair> pairs = pairs_of(find_worst_links(state, links, kUnlimited).links);
-  state.links.append(links);
-  return pairs;
+// Of the links that do not hold at this level.
+std::vector<ElementPair> failing_pairs(const SolverState& state) {
+  return parallel_collect<ElementPair>(state.tree.size(), 1024,
+                                       [&](std::size_t i, std::vector<ElementPair>& pairs) {
+                                         const ElementId receiver(i);
+                                         for (const Link& link : state.links.of(receiver))
+                                           if (relative_error(state, {receiver, link}) > 1.f)
+                                             pairs.push_back({receiver, link.source});
+                                       });
 }
 
 // Any part of the list is then like the whole, and its time tells that of the others; neighbours,
@@ -306,7 +309,7 @@ void sample_receivers(SolverState& state, std::size_t k, IterationRecord& record
   waiting.erase(first, waiting.end());
   const SampledLinkOptions options = sampled_link_options(state);
   hand_over(state, receivers);
-  give_light_to_clusters(state, *state.emitters, receivers, options);
+  give_light_to_clusters(state, receivers);
   update_given_light(state, record.irradiance_threshold);
   state.sampled_links.append(
       sample_links(state.tree, state.world->rays, state.opacity,
@@ -342,8 +345,8 @@ void sample_links(SolverState& state, std::size_t k, const Progress& progress,
 int expected_sweeps(const SolverState& state, const IterationBudget& budget) {
   if (state.schedule.stage == Stage::shape) return 0;
   if (budget.limited()) return kSweepsOfShortIteration;
-  for (auto i = state.history.rbegin(); i != state.history.rend(); ++i)
-    if (i->sweeps > 0) return i->sweeps;
+  for (const IterationRecord& earlier : std::views::reverse(state.history))
+    if (earlier.sweeps > 0) return earlier.sweeps;
   return kFirstGuessOfSweeps;
 }
 
@@ -467,7 +470,7 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
   // While only elements are shaped, nothing new arrives anywhere.
   Sweeps swept;
   if (stage != Stage::shape)
-    swept = sweep(state, kSweepTolerance, budget.limited() ? kSweepsOfShortIteration : kMostSweeps);
+    swept = sweep(state, budget.limited() ? kSweepsOfShortIteration : kMostSweeps);
   if (todo.stage == Stage::converge && (swept.converged || !budget.limited()))
     todo.stage = Stage::done;
   record.sweeps = swept.count;
@@ -496,7 +499,7 @@ EnergyBalance energy_balance(const SolverState& state) {
   EnergyBalance balance;
   for (std::size_t i = 0; i < state.tree.size(); ++i) {
     const ElementId e(i);
-    if (state.tree[e].is_cluster() || !state.tree[e].is_leaf()) continue;
+    if (!state.tree[e].is_leaf_cell()) continue;
     const float area = state.tree[e].area;
     balance.emitted += area * state.exitance[e];
     if (!state.outer_light.empty())
@@ -512,7 +515,7 @@ float mean_irradiance(const SolverState& state) {
   for (std::size_t i = 0; i < state.tree.size(); ++i) {
     const ElementId e(i);
     const float irradiance = average(state.irradiance[e]);
-    if (state.tree[e].is_cluster() || !state.tree[e].is_leaf() || !(irradiance > 0.f)) continue;
+    if (!state.tree[e].is_leaf_cell() || !(irradiance > 0.f)) continue;
     power += static_cast<double>(state.tree[e].area * irradiance);
     area += static_cast<double>(state.tree[e].area);
   }

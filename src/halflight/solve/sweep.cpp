@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;
 constexpr float kLargestRow = 1.3f;  // of refined links
+// Of all reflected power that may change in the last sweep.
+constexpr double kLargestChange = static_cast<double>(2e-4f);
 
 // Clusters numbered by themselves, so that only they carry directional irradiance.
 struct ClusterNumbers {
@@ -104,10 +106,13 @@ class ShownRadiosity {
   explicit ShownRadiosity(const SolverState& state) {
     if (!state.inside) return;
     wanted_.resize(state.inside->clusters().size());
-    for (std::size_t i = 0; i < state.tree.size(); ++i)
-      for (const Link& l : state.links.of(ElementId(i)))
+    for (std::size_t i = 0; i < state.tree.size(); ++i) {
+      const ElementId receiver(i);
+      if (state.sampled[receiver] != 0) continue;
+      for (const Link& l : state.links.of(receiver))
         if (state.inside->knows(l.source))
-          wanted_[state.inside->number(l.source)][cell_of(state, l.source, ElementId(i))] = true;
+          wanted_[state.inside->number(l.source)][cell_of(state, l.source, receiver)] = true;
+    }
     of_.resize(wanted_.size());
   }
   void update(const SolverState& state) {
@@ -217,7 +222,7 @@ IdVector<ElementId, float> find_row_limits(SolverState& state, SweepPlan& plan) 
 void finish_leaves(SolverState& state) {
   parallel_for(state.tree.size(), kGrain, [&](std::size_t i) {
     const ElementId e(i);
-    if (!state.tree[e].is_cluster() && state.tree[e].is_leaf())
+    if (state.tree[e].is_leaf_cell())
       state.irradiance[e] = state.row_limits[e] * state.irradiance[e] + state.given_light[e];
   });
 }
@@ -236,7 +241,7 @@ Change change_of_radiosity(const SolverState& state) {
   return parallel_sum(state.tree.size(), kGrain, Change{}, [&](std::size_t i) {
     const ElementId id(i);
     const Element& e = state.tree[id];
-    if (e.is_cluster() || !e.is_leaf()) return Change{};
+    if (!e.is_leaf_cell()) return Change{};
     const Rgb reflected = state.reflectance[id] * state.irradiance[id];
     const Rgb change = state.exitance[id] + reflected - state.radiosity[id];
     return Change{e.area * average(glm::abs(change)), e.area * average(reflected)};
@@ -249,7 +254,7 @@ void pull(SolverState& state) {
   const ElementTree& tree = state.tree;
   parallel_for(tree.size(), kGrain, [&](std::size_t i) {
     const ElementId e(i);
-    if (!tree[e].is_cluster() && tree[e].is_leaf())
+    if (tree[e].is_leaf_cell())
       state.radiosity[e] = state.exitance[e] + state.reflectance[e] * state.irradiance[e];
   });
   for (std::size_t i = tree.size(); i-- > 0;) {
@@ -267,7 +272,7 @@ void pull(SolverState& state) {
   }
 }
 
-Sweeps sweep(SolverState& state, float tolerance, int most_sweeps) {
+Sweeps sweep(SolverState& state, int most_sweeps) {
   SweepPlan plan(state);
   if (state.row_limits.empty()) state.row_limits = find_row_limits(state, plan);
   Sweeps done;
@@ -279,7 +284,7 @@ Sweeps sweep(SolverState& state, float tolerance, int most_sweeps) {
     const Change change = change_of_radiosity(state);
     pull(state);
     ++done.count;
-    done.converged = change.absolute <= static_cast<double>(tolerance) * change.reflected;
+    done.converged = change.absolute <= kLargestChange * change.reflected;
   }
   return done;
 }

@@ -9,8 +9,9 @@ struct Sweeps {
   int count = 0;
   bool converged = false;
 };
-// Sweeps (Jacobi) until radiosity changes by less than `tolerance` of its mean.
-Sweeps sweep(SolverState& state, float tolerance, int most_sweeps);
+inline constexpr int kMostSweeps = 60;
+// Sweeps (Jacobi) until radiosity hardly changes any more.
+Sweeps sweep(SolverState& state, int most_sweeps = kMostSweeps);
 
 // Radiosity of every element from the irradiance of the leaves: B = rho E + pi L, means upwards.
 void pull(SolverState& state);

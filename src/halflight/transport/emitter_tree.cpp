@@ -64,7 +64,7 @@ std::vector<EmittingSide> find_emitters(const World& world) {
     for (std::uint32_t k = 0; k < samples; ++k)
       e.radiance += emission_at(world.scene, g, t, uniform_triangle(r2_sequence(k))) /
                     static_cast<float>(samples);
-    e.power = average(e.radiance) * 0.5f * glm::length(g.scaled_normal(t));
+    e.power = average(e.radiance) * g.area(t);
     if (!(e.power > 0.f)) continue;
     emitters.push_back(e);
     if (!m.double_sided) continue;
@@ -347,7 +347,7 @@ std::optional<EmitterPoint> EmitterTree::choose(const Vec3& x, float radius, con
   const Vec2 b = uniform_triangle({u.x, u.y});
   point.position = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
   point.normal = shapes_[point.emitter].normal;
-  const float area = 0.5f * glm::length(world_->geometry.scaled_normal(e.triangle));
+  const float area = world_->geometry.area(e.triangle);
   point.power = e.radiance * (area / probability);
   return point;
 }

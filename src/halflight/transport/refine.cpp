@@ -104,23 +104,26 @@ class Oracle {
     return verdict;
   }
 
+  float feature_size(ElementId e) const { return (*options_.feature_sizes)[e]; }
+  float finest(ElementId cell) const {
+    return smallest_cell(feature_size(cell), options_.finest_cell);
+  }
+
   TransferScene received_by(ElementId r) const {
     TransferScene scene = scene_;
-    scene.feature_size = (*options_.feature_sizes)[r];
+    scene.feature_size = feature_size(r);
     return scene;
   }
 
   bool is_blind(ElementId r) const {
     return !scene_.tree[r].is_cluster() &&
-           scene_.tree.cell_size(r) > options_.largest_blind_cell * options_.smallest_cell(r);
+           scene_.tree.cell_size(r) > options_.largest_blind_cell * finest(r);
   }
 
   bool can_split(ElementId e) const {
     const Element& element = scene_.tree[e];
-    if (element.is_cluster())
-      return !element.is_leaf() &&
-             element.diameter() > options_.smallest_cluster * (*options_.feature_sizes)[e];
-    return !element.is_leaf() || scene_.tree.cell_size(e) > 2.f * options_.smallest_cell(e);
+    if (element.is_cluster()) return !element.is_leaf() && element.diameter() > feature_size(e);
+    return !element.is_leaf() || scene_.tree.cell_size(e) > 2.f * finest(e);
   }
 
   // The larger end first; `accept` when neither end can be split.

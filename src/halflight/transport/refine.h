@@ -13,26 +13,27 @@
 
 namespace halflight {
 
+// The feature gate: cells are not split below half their feature size, nor below the finest there
+// are.
+inline float smallest_cell(float feature_size, float finest_cell) {
+  return std::max(0.5f * feature_size, finest_cell);
+}
+
 struct RefineOptions {
   // A link of irradiance error e on a receiver of area A is accepted when
   // e * sqrt(A / scene area) <= tolerance * irradiance_threshold (W/m2), with the receiver's own
   // tolerance: independent errors add in the square, weighted by the area they fall on, so this
   // equalises what links add to the RMS error.
   float irradiance_threshold = 0.f;
-  // s of each element: the smallest shadow that counts there, metres.
+  // s of each element: the smallest shadow that counts there, metres. Clusters are not opened
+  // below it: what is inside is smaller than any shadow asked for, and receives and sends as one.
   const IdVector<ElementId, float>* feature_sizes = nullptr;
-  // Cells are not split below half their feature size (the feature gate), nor below this.
+  // Cells are not split below half their feature size, nor below this (smallest_cell).
   float finest_cell = 0.f;
-  // Clusters are not opened below this many feature sizes: what is inside is smaller than any
-  // shadow asked for, and receives and sends as one.
-  float smallest_cluster = 1.f;
   // Cells larger than this many of the smallest ones are split whatever their samples say, as
   // samples can miss a shadow.
   float largest_blind_cell = kInfinity;
 
-  float smallest_cell(ElementId cell) const {
-    return std::max(0.5f * (*feature_sizes)[cell], finest_cell);
-  }
   // Only the shape of the elements is wanted: pairs are judged, cells are split, no link is made.
   bool shape_only = false;
   // Inside clusters that exchange light as one; null: not known.

@@ -11,10 +11,6 @@ namespace {
 // a stack of n sheets takes 2 n.
 constexpr int kTries = 64;
 
-double area_of(const Geometry& g, TriangleId t) {
-  return 0.5 * static_cast<double>(glm::length(g.scaled_normal(t)));
-}
-
 }  // namespace
 
 ClusterSampler::ClusterSampler(const World& world, const MultiresTree& tree)
@@ -23,7 +19,8 @@ ClusterSampler::ClusterSampler(const World& world, const MultiresTree& tree)
   for (const TriangleBlock& block : tree.arrays().blocks) {
     area_before_.push_back(area);
     for (std::size_t lane = 0; lane < kWide; ++lane)
-      if ((block.used >> lane) & 1u) area += area_of(world.geometry, block.triangles[lane]);
+      if ((block.used >> lane) & 1u)
+        area += static_cast<double>(world.geometry.area(block.triangles[lane]));
   }
   area_before_.push_back(area);
 }
@@ -42,7 +39,7 @@ RayHit ClusterSampler::any_point(std::uint32_t slot, std::uint64_t seed) const {
   double left = wanted - area_before_[index];
   for (std::size_t lane = 0; lane < kWide && ((block.used >> lane) & 1u); ++lane) {
     hit.triangle = block.triangles[lane];
-    left -= area_of(world_->geometry, hit.triangle);
+    left -= static_cast<double>(world_->geometry.area(hit.triangle));
     if (left < 0.0) break;
   }
   hit.barycentric = uniform_triangle(random_shift(hash(seed, 2)));

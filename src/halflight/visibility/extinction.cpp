@@ -31,7 +31,7 @@ IdVector<TriangleId, float> blocking_areas(const Scene& scene, const Geometry& g
   IdVector<TriangleId, float> areas(g.triangles.size());
   parallel_for(g.triangles.size(), 1024, [&](std::size_t i) {
     const TriangleId t(i);
-    const float area = 0.5f * glm::length(g.scaled_normal(t));
+    const float area = g.area(t);
     const float opacity = mean_opacity(scene, g, t);
     const float share = bodies.closed[bodies.of_triangle[t]] ? 0.25f * (2.f - opacity) : 0.5f;
     areas[t] = share * opacity * area;

@@ -201,8 +201,7 @@ std::vector<VisibilityRay> rays_between_surfaces(const World& world) {
   std::vector<double> cumulative;
   double area = 0.0;
   for (std::size_t t = 0; t < g.triangles.size(); ++t)
-    cumulative.push_back(area +=
-                         0.5 * static_cast<double>(glm::length(g.scaled_normal(TriangleId(t)))));
+    cumulative.push_back(area += static_cast<double>(g.area(TriangleId(t))));
   struct Point {
     Vec3 position, normal;
   };

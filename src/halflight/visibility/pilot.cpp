@@ -20,7 +20,7 @@ ClutterMeasure measure_clutter(const World& world, const Bodies& bodies, float f
   double sheets = 0.0;
   for (std::size_t i = 0; i < g.triangles.size(); ++i) {
     const TriangleId t(i);
-    const double area = 0.5 * static_cast<double>(glm::length(g.scaled_normal(t)));
+    const double area = static_cast<double>(g.area(t));
     const auto [a, b, c] = g.corners(t);
     const float longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
     if (bodies.closed[bodies.of_triangle[t]] || longest > largest) continue;
