@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
-#include <ranges>
 #include <utility>
 
 #include "halflight/base/hash.h"
@@ -345,9 +344,9 @@ void sample_links(SolverState& state, std::size_t k, const Progress& progress,
 int expected_sweeps(const SolverState& state, const IterationBudget& budget) {
   if (state.schedule.stage == Stage::shape) return 0;
   if (budget.limited()) return kSweepsOfShortIteration;
-  for (const IterationRecord& earlier : std::views::reverse(state.history))
-    if (earlier.sweeps > 0) return earlier.sweeps;
-  return kFirstGuessOfSweeps;
+  const auto last = std::find_if(state.history.rbegin(), state.history.rend(),
+                                 [](const IterationRecord& r) { return r.sweeps > 0; });
+  return last != state.history.rend() ? last->sweeps : kFirstGuessOfSweeps;
 }
 
 // Links to refine, pairs to shape or receivers to sample that the budget has room for; at least 1.
