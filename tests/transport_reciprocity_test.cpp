@@ -13,13 +13,13 @@ using testing::QuadScene;
 constexpr int kSamples = 4096;
 
 // A floor of 2 x 1 m and above it a panel of 1 x 0.5 m; an opaque or clear pane half across.
-SolverState panel_over_floor(float pane_opacity) {
+SolverState panel_over_floor(float height, float pane_opacity) {
   QuadScene scene;
   const MaterialId glowing = scene.material(0.f, 1.f);
   scene.quad({0, 0, 0}, {0, 0, 1}, {2, 0, 0}, glowing);
-  scene.quad({0.3f, 1, 0.2f}, {1, 0, 0}, {0, 0, 0.5f}, glowing);
+  scene.quad({0.3f, height, 0.2f}, {1, 0, 0}, {0, 0, 0.5f}, glowing);
   if (pane_opacity > 0.f)
-    scene.quad({0, 0.5f, -1}, {0.8f, 0, 0}, {0, 0, 3}, scene.pane(pane_opacity));
+    scene.quad({0, 0.5f * height, -1}, {0.8f, 0, 0}, {0, 0, 3}, scene.pane(pane_opacity));
   return make_state(make_world(scene.scene), testing::options_of(LinkMaker::refined, 0.1f));
 }
 
@@ -32,18 +32,25 @@ float weight(const SolverState& state, ElementId receiver, ElementId source) {
   return estimate_transfer(scene, receiver, source, kSamples, 1).weight;
 }
 
-class Reciprocity : public ::testing::TestWithParam<float> {};
+// Near cells, for which a closed form is multiplied by mean visibility, exchange as much only where
+// nothing is in between.
+struct Exchange {
+  float height, pane_opacity;
+};
+class Reciprocity : public ::testing::TestWithParam<Exchange> {};
 
 TEST_P(Reciprocity, BothEndsExchangeTheSamePower) {
-  const SolverState state = panel_over_floor(GetParam());
+  const SolverState state = panel_over_floor(GetParam().height, GetParam().pane_opacity);
   const ElementId floor = front_of_triangle(state, 0), panel = front_of_triangle(state, 2);
   const float to_floor = state.tree[floor].area * weight(state, floor, panel);
   const float to_panel = state.tree[panel].area * weight(state, panel, floor);
-  EXPECT_GT(to_floor, 0.01f);
+  EXPECT_GT(to_floor, 0.002f);
   EXPECT_NEAR(to_floor, to_panel, 0.015f * to_floor);
 }
 
-INSTANTIATE_TEST_SUITE_P(OpacityOfThePane, Reciprocity, ::testing::Values(0.f, 0.4f, 1.f));
+INSTANTIATE_TEST_SUITE_P(HeightsAndPanes, Reciprocity,
+                         ::testing::Values(Exchange{1.f, 0.f}, Exchange{7.f, 0.f},
+                                           Exchange{7.f, 0.4f}, Exchange{7.f, 1.f}));
 
 TEST(Transfer, ATranslucentPaneInFrontOfEverythingScalesTheWeight) {
   QuadScene scene;
@@ -58,7 +65,7 @@ TEST(Transfer, ATranslucentPaneInFrontOfEverythingScalesTheWeight) {
 }
 
 TEST(Transfer, ElementsThatTurnTheirBacksExchangeNothing) {
-  const SolverState state = panel_over_floor(0.f);
+  const SolverState state = panel_over_floor(1.f, 0.f);
   const SurfaceId floor = state.surfaces->of_triangle[TriangleId(0)];
   const ElementId under_floor = state.tree.side_root(side_of(floor, true));
   const ElementId panel = front_of_triangle(state, 2);

@@ -8,16 +8,24 @@
 
 namespace halflight {
 
-// Point i of the additive R2 sequence (Roberts 2018: the plastic number), shifted by `shift`,
-// in [0, 1)^2. Any prefix is well spread.
-inline Vec2 r2_sequence(std::uint32_t i, Vec2 shift = Vec2(0.5f)) {
-  constexpr std::uint32_t kAlpha1 = 3242174889u;  // 2^32 / p
-  constexpr std::uint32_t kAlpha2 = 2447445414u;  // 2^32 / p^2
-  const float x = static_cast<float>((i * kAlpha1) >> 8) * 0x1p-24f + shift.x;
-  const float y = static_cast<float>((i * kAlpha2) >> 8) * 0x1p-24f + shift.y;
+// Point i of an additive sequence of the steps a and b (in units of 2^-32), from `shift`, in
+// [0, 1)^2.
+inline Vec2 additive_sequence(std::uint32_t i, std::uint32_t a, std::uint32_t b, Vec2 shift) {
+  const float x = static_cast<float>((i * a) >> 8) * 0x1p-24f + shift.x;
+  const float y = static_cast<float>((i * b) >> 8) * 0x1p-24f + shift.y;
   return {x - std::floor(x), y - std::floor(y)};
 }
-// A shift for r2_sequence from a seed.
+// The R2 sequence (Roberts 2018): steps 1/p and 1/p^2 of the plastic number. Any prefix is well
+// spread.
+inline Vec2 r2_sequence(std::uint32_t i, Vec2 shift = Vec2(0.5f)) {
+  return additive_sequence(i, 3242174889u, 2447445414u, shift);
+}
+// To go with r2_sequence where two places are sampled at once: of steps sqrt 2 and sqrt 3, so that
+// the pairs fill [0, 1)^4. The same sequence twice would keep the two a constant apart.
+inline Vec2 companion_sequence(std::uint32_t i, Vec2 shift = Vec2(0.5f)) {
+  return additive_sequence(i, 1779033705u, 3144134279u, shift);
+}
+// A shift for these sequences from a seed.
 inline Vec2 random_shift(std::uint64_t seed) {
   return {to_unit_float(hash(seed, 1)), to_unit_float(hash(seed, 2))};
 }

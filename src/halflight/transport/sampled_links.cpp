@@ -52,7 +52,7 @@ void sample_cell(const ElementTree& tree, const RayScene& rays,
   RayTally tally{links};
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
     // Points and directions walk through their sequences with different strides.
-    const Vec3 x = tree.sample(cell, r2_sequence(7 * k, shift_x)).position;
+    const Vec3 x = tree.sample(cell, companion_sequence(k, shift_x)).position;
     const Vec3 w = frame.to_world(cosine_hemisphere(r2_sequence(k, shift_w)));
     const auto hit = rays.closest_hit(rays.lift(x, normal), w, kInfinity, hash(cell.value, k));
     if (hit) tally.add(tree, opacity, cell, *hit, 1.f / static_cast<float>(n));

@@ -157,7 +157,7 @@ TransferEstimate estimate_transfer(const TransferScene& scene, ElementId receive
     CellSample x =
         sample_element(tree, receiver, choice(choice_r), r2_sequence(index, shift_r), area);
     CellSample y =
-        sample_element(tree, source, choice(choice_s), r2_sequence(index + 1, shift_s), power);
+        sample_element(tree, source, choice(choice_s), companion_sequence(index, shift_s), power);
     // A receiving cluster is represented by cells that face the source, a near cell by the part
     // above the receiver's horizon, which is what the closed form integrates.
     for (std::uint32_t attempt = 0;
@@ -237,8 +237,8 @@ TransferEstimate estimate_touching_transfer(const TransferScene& scene, ElementI
     const auto index = static_cast<std::uint32_t>(k);
     const float stratum = (static_cast<float>(k) + choice) / static_cast<float>(samples);
     const CellSample x = sample_element(tree, receiver, stratum, r2_sequence(index, shift_x), area);
-    const Vec3 w =
-        Frame::from_normal(x.normal).to_world(cosine_hemisphere(r2_sequence(index + 1, shift_w)));
+    const Vec3 w = Frame::from_normal(x.normal).to_world(
+        cosine_hemisphere(companion_sequence(index, shift_w)));
     const auto hit = rays.closest_hit(rays.lift(x.position, x.normal), w, kInfinity, hash(seed, k));
     if (!hit) continue;
     ElementId at = tree.leaf_hit(*hit);
