@@ -60,4 +60,22 @@ T parallel_sum(std::size_t n, std::size_t grain, T zero, const Body& body) {
   return total;
 }
 
+// `less` orders any two different elements, so that there is one result.
+template <class T, class Less>
+void parallel_sort(std::vector<T>& list, const Less& less) {
+  constexpr std::size_t kSortedAtOnce = 1 << 16;
+  const auto at = [&](std::size_t i) {
+    return list.begin() + static_cast<std::ptrdiff_t>(std::min(i, list.size()));
+  };
+  const auto runs_of = [&](std::size_t length) { return (list.size() + length - 1) / length; };
+  parallel_for(runs_of(kSortedAtOnce), 1, [&](std::size_t r) {
+    std::sort(at(r * kSortedAtOnce), at((r + 1) * kSortedAtOnce), less);
+  });
+  for (std::size_t length = kSortedAtOnce; length < list.size(); length *= 2)
+    parallel_for(runs_of(2 * length), 1, [&](std::size_t r) {
+      const std::size_t first = 2 * r * length;
+      std::inplace_merge(at(first), at(first + length), at(first + 2 * length), less);
+    });
+}
+
 }  // namespace halflight

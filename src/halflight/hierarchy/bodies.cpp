@@ -2,27 +2,22 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
 
 namespace halflight {
 
-Bodies find_bodies(const Geometry& g, const IdVector<VertexId, VertexId>& welded) {
+Bodies find_bodies(const Geometry& g, const IdVector<VertexId, VertexId>& welded,
+                   const std::vector<HalfEdge>& sorted_half_edges) {
   std::vector<std::uint32_t> parent(g.positions.size());
   std::iota(parent.begin(), parent.end(), 0u);
   const auto find = [&](std::uint32_t v) {
     while (parent[v] != v) v = parent[v] = parent[parent[v]];
     return v;
   };
-  std::vector<std::tuple<std::uint32_t, std::uint32_t, bool, std::uint32_t>> edges;
-  edges.reserve(3 * g.triangles.size());
-  for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
-    const auto& v = g.triangles[TriangleId(t)];
+  for (const auto& v : g.triangles.raw())
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = welded[v[k]].value, b = welded[v[(k + 1) % 3]].value;
-      parent[std::max(find(a), find(b))] = std::min(find(a), find(b));
-      edges.emplace_back(std::min(a, b), std::max(a, b), a < b, t);
+      const std::uint32_t a = find(welded[v[k]].value), b = find(welded[v[(k + 1) % 3]].value);
+      parent[std::max(a, b)] = std::min(a, b);
     }
-  }
 
   Bodies bodies;
   bodies.of_triangle.resize(g.triangles.size());
@@ -34,13 +29,13 @@ Bodies find_bodies(const Geometry& g, const IdVector<VertexId, VertexId>& welded
     bodies.members[body].push_back(TriangleId(t));
   }
   bodies.closed.resize(bodies.members.size(), 1);
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i < edges.size();) {
-    const auto [low, high, first_forward, t] = edges[i];
+  for (auto e = sorted_half_edges.begin(); e != sorted_half_edges.end();) {
+    const HalfEdge& first = *e;
     std::size_t forward = 0, backward = 0;
-    for (; i < edges.size() && std::get<0>(edges[i]) == low && std::get<1>(edges[i]) == high; ++i)
-      ++(std::get<2>(edges[i]) ? forward : backward);
-    if (forward != 1 || backward != 1) bodies.closed[bodies.of_triangle[TriangleId(t)]] = 0;
+    for (; e != sorted_half_edges.end() && e->is_beside(first); ++e)
+      ++(e->forward ? forward : backward);
+    if (forward != 1 || backward != 1)
+      bodies.closed[bodies.of_triangle[TriangleId(first.triangle)]] = 0;
   }
   return bodies;
 }

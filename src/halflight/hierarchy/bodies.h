@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "halflight/base/ids.h"
+#include "halflight/hierarchy/half_edges.h"
 #include "halflight/scene/geometry.h"
 
 namespace halflight {
@@ -17,7 +18,8 @@ struct Bodies {
   IdVector<BodyId, std::vector<TriangleId>> members;
 };
 
-// Bodies are numbered by their first triangle. `welded`: see weld_positions (surfaces.h).
-Bodies find_bodies(const Geometry& geometry, const IdVector<VertexId, VertexId>& welded);
+// Bodies are numbered by their first triangle.
+Bodies find_bodies(const Geometry& geometry, const IdVector<VertexId, VertexId>& welded,
+                   const std::vector<HalfEdge>& sorted_half_edges);
 
 }  // namespace halflight

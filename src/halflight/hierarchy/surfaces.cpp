@@ -3,6 +3,12 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
+#include <utility>
+
+#include "halflight/base/parallel.h"
+#include "halflight/hierarchy/half_edges.h"
+#include "halflight/hierarchy/morton.h"
+#include "halflight/hierarchy/morton_order.h"
 
 namespace halflight {
 namespace {
@@ -12,40 +18,14 @@ namespace {
 constexpr float kSameNormal = 2e-3f;
 constexpr float kSamePlane = 1e-4f;
 
-struct HalfEdge {
-  std::uint32_t low, high;  // welded vertices
-  std::uint32_t triangle;
-  std::uint8_t edge;  // of the triangle: from corner `edge` to the next
-  bool forward;       // runs low -> high
-  bool operator<(const HalfEdge& o) const {
-    return std::tie(low, high, triangle) < std::tie(o.low, o.high, o.triangle);
-  }
-};
-
-std::vector<HalfEdge> sorted_half_edges(const Geometry& g,
-                                        const IdVector<VertexId, VertexId>& welded) {
-  std::vector<HalfEdge> edges;
-  edges.reserve(3 * g.triangles.size());
-  for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
-    const auto& v = g.triangles[TriangleId(t)];
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = welded[v[k]].value, b = welded[v[(k + 1) % 3]].value;
-      edges.push_back({std::min(a, b), std::max(a, b), t, static_cast<std::uint8_t>(k), a < b});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
 // Neighbours across each edge that exactly two triangles share in opposite directions; else
 // invalid.
-std::vector<std::array<TriangleId, 3>> manifold_neighbours(
-    const Geometry& g, const IdVector<VertexId, VertexId>& welded) {
-  const std::vector<HalfEdge> edges = sorted_half_edges(g, welded);
-  std::vector<std::array<TriangleId, 3>> neighbours(g.triangles.size());
+std::vector<std::array<TriangleId, 3>> manifold_neighbours(const std::vector<HalfEdge>& edges,
+                                                           std::size_t triangles) {
+  std::vector<std::array<TriangleId, 3>> neighbours(triangles);
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i;
-    while (j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high) ++j;
+    while (j < edges.size() && edges[j].is_beside(edges[i])) ++j;
     if (j - i == 2 && edges[i].forward != edges[i + 1].forward) {
       const HalfEdge &a = edges[i], &b = edges[i + 1];
       neighbours[a.triangle][a.edge] = TriangleId(b.triangle);
@@ -122,40 +102,51 @@ void measure(const Geometry& g, const Surfaces& surfaces, Surface& s) {
     }
 }
 
-}  // namespace
-
-IdVector<VertexId, VertexId> weld_positions(const Geometry& g) {
-  std::vector<std::uint32_t> order(g.positions.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto less = [&](std::uint32_t a, std::uint32_t b) {
-    const Vec3 &p = g.positions[VertexId(a)], &q = g.positions[VertexId(b)];
-    return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
-  };
-  std::sort(order.begin(), order.end(), less);
-  IdVector<VertexId, VertexId> welded(g.positions.size());
-  for (std::size_t i = 0; i < order.size();) {
-    std::size_t j = i;
-    while (j < order.size() && g.positions[VertexId(order[j])] == g.positions[VertexId(order[i])])
-      welded[VertexId(order[j++])] = VertexId(order[i]);
-    i = std::max(j, i + 1);
+// Renumbers surfaces, and their triangles with them.
+void order_along_curve(const Geometry& g, Surfaces& surfaces) {
+  const std::size_t n = surfaces.surfaces.size();
+  std::vector<std::uint64_t> codes(n);
+  parallel_for(n, 4096, [&](std::size_t i) {
+    codes[i] = morton_code(surfaces[SurfaceId(i)].box.center(), g.bounds);
+  });
+  Surfaces ordered;
+  ordered.surfaces.reserve(n);
+  ordered.triangles.reserve(surfaces.triangles.size());
+  ordered.cumulative_area.reserve(surfaces.triangles.size());
+  for (const std::uint32_t i : order_by_key(codes)) {
+    Surface s = surfaces[SurfaceId(i)];
+    const std::size_t first = s.first_triangle;
+    s.first_triangle = static_cast<std::uint32_t>(ordered.triangles.size());
+    const SurfaceId id = ordered.surfaces.push_back(s);
+    for (std::size_t k = first; k < first + s.triangle_count; ++k) {
+      ordered.triangles.push_back(surfaces.triangles[k]);
+      ordered.cumulative_area.push_back(surfaces.cumulative_area[k]);
+      surfaces.of_triangle[surfaces.triangles[k]] = id;
+    }
   }
-  return welded;
+  surfaces.surfaces = std::move(ordered.surfaces);
+  surfaces.triangles = std::move(ordered.triangles);
+  surfaces.cumulative_area = std::move(ordered.cumulative_area);
 }
+
+}  // namespace
 
 Surfaces build_surfaces(const Geometry& g) {
   const std::size_t n = g.triangles.size();
   const IdVector<VertexId, VertexId> welded = weld_positions(g);
-  const auto neighbours = manifold_neighbours(g, welded);
+  const std::vector<HalfEdge> edges = sorted_half_edges(g, welded);
+  const auto neighbours = manifold_neighbours(edges, n);
 
   std::vector<float> area(n);
-  for (std::size_t i = 0; i < n; ++i) area[i] = g.area(TriangleId(i));
+  parallel_for(n, 4096, [&](std::size_t i) { area[i] = g.area(TriangleId(i)); });
   std::vector<std::uint32_t> largest_first(n);
   std::iota(largest_first.begin(), largest_first.end(), 0u);
-  std::stable_sort(largest_first.begin(), largest_first.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
+  parallel_sort(largest_first, [&](std::uint32_t a, std::uint32_t b) {
+    return std::tie(area[b], a) < std::tie(area[a], b);
+  });
 
   Surfaces result;
-  result.bodies = find_bodies(g, welded);
+  result.bodies = find_bodies(g, welded, edges);
   result.of_triangle.resize(n);
   result.triangles.reserve(n);
   result.cumulative_area.reserve(n);
@@ -184,6 +175,7 @@ Surfaces build_surfaces(const Geometry& g) {
     measure(g, result, s);
     result.surfaces.push_back(s);
   }
+  order_along_curve(g, result);
   return result;
 }
 

@@ -58,10 +58,8 @@ struct Surfaces {
   }
 };
 
-// Elements then are cells of the surface, whatever triangles the file cut it into.
+// Elements then are cells of the surface, whatever triangles the file cut it into. Surfaces are
+// numbered along a space-filling curve: what is near in space is near in memory.
 Surfaces build_surfaces(const Geometry& geometry);
-
-// For every vertex the first vertex at exactly the same position.
-IdVector<VertexId, VertexId> weld_positions(const Geometry& geometry);
 
 }  // namespace halflight
