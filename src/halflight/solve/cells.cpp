@@ -9,6 +9,9 @@ namespace {
 
 constexpr std::uint32_t kTextureSamples = 8;
 constexpr std::uint32_t kPointsOfCell = 4;
+// Cells that receive much get more points: a share of all received power for each.
+constexpr float kShareOfPoint = 1e-4f;
+constexpr std::uint32_t kMostPoints = 16;
 constexpr int kSkyRays = 16;  // of each point
 constexpr DirectLightOptions kCellDirectLight{
     .shadow_rays = 8, .penumbra_rays = 8, .largest_group_share = 0.05f, .smallest_angle = 0.01f};
@@ -31,15 +34,33 @@ bool is_buried(const SolverState& state, const Vec3& x, const Vec3& n, std::uint
   return hit && !state.tree.leaf_hit(*hit).valid();
 }
 
+float received_power(const SolverState& state, ElementId cell) {
+  return state.tree[cell].area * average(state.irradiance[cell]);
+}
+
+float received_power(const SolverState& state) {
+  return static_cast<float>(parallel_sum(state.tree.size(), 4096, 0.0, [&](std::size_t i) {
+    const ElementId e(i);
+    return state.tree[e].is_leaf_cell() ? static_cast<double>(received_power(state, e)) : 0.0;
+  }));
+}
+
+// By what has been known before, so that the number has nothing to do with what is found.
+std::uint32_t points_of(const SolverState& state, ElementId cell, float total_power) {
+  const bool whole_and_small = state.tree.cell_size(cell) < 2.f * smallest_cell(state, cell);
+  const float share = received_power(state, cell) / std::max(total_power, 1e-30f);
+  return std::clamp(static_cast<std::uint32_t>(share / kShareOfPoint),
+                    whole_and_small ? 1u : kPointsOfCell, kMostPoints);
+}
+
 // Of the part that is not covered. Light from emitters is left to refined links.
-GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uint64_t stream) {
+GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uint32_t samples,
+                              std::uint64_t stream) {
   const EmitterTree* emitters = state.sampled[cell] != 0 ? state.emitters.get() : nullptr;
   const Vec3 n = state.tree.normal(cell);
   const float s = state.feature_sizes[cell];
   DirectLightOptions options = kCellDirectLight;
   options.feature_size = s;
-  const bool whole_and_small = state.tree.cell_size(cell) < 2.f * smallest_cell(state, cell);
-  const std::uint32_t samples = whole_and_small ? 1 : kPointsOfCell;
   GivenLight result;
   float sum = 0.f, squares = 0.f;
   const Vec2 shift = random_shift(hash(cell.value, stream, 11));
@@ -199,18 +220,20 @@ void update_given_light(SolverState& state, float irradiance_threshold) {
     if (state.tree[e].is_leaf_cell() && !state.given_light_known[e]) open.push_back(e);
   }
   const float scene_area = state.tree[state.tree.root()].area;
+  const float total_power = received_power(state);
   while (!open.empty()) {
     std::vector<std::uint8_t> uneven(open.size());
     parallel_for(open.size(), 16, [&](std::size_t i) {
       const ElementId e = open[i];
       // As with links: what is kept had no say in whether to split (transport/refine.cpp).
       if (state.tree.cell_size(e) > 2.f * smallest_cell(state, e)) {
-        const GivenLight pilot = sample_given_light(state, e, kPilot);
+        const GivenLight pilot = sample_given_light(state, e, kPointsOfCell, kPilot);
         const float error = pilot.deviation * std::sqrt(state.tree[e].area / scene_area);
         uneven[i] = error > state.tolerance[e] * irradiance_threshold;
         if (uneven[i]) return;
       }
-      const GivenLight light = sample_given_light(state, e, kKept);
+      const GivenLight light =
+          sample_given_light(state, e, points_of(state, e, total_power), kKept);
       state.given_light[e] = light.mean;
       if (!state.outer_light.empty()) state.outer_light[e] = light.outer;
       state.given_light_known[e] = 1;
