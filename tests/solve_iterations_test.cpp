@@ -58,6 +58,12 @@ TEST(ErrorHistogram, CrowdedHighestBinStillGivesWork) {
   EXPECT_LT(histogram.threshold_for(10), 8.f);
 }
 
+TEST(ErrorHistogram, RoomForOneStillGivesWork) {
+  ErrorHistogram histogram;
+  for (int i = 0; i < 3; ++i) histogram.add(8.f);
+  EXPECT_LT(histogram.threshold_for(1), 8.f);
+}
+
 TEST(CostModel, LearnsWhatItIsTold) {
   CostModel costs;
   for (int i = 0; i < 8; ++i) {
@@ -90,6 +96,22 @@ TEST_P(Iterations, RefineAtMostSoManyLinksAndStayValid) {
                         }
                       });
   EXPECT_GT(count, 10u);
+}
+
+TEST(Iterations, SplitNoCellFinerThanTheirLevelNeeds) {
+  SolverState state = make_state(make_world(doorway_scene()),
+                                 testing::options_of(LinkMaker::refined, 0.05f, 0.02f));
+  float last = kInfinity;
+  for (const float scale : {4.f, 2.f, 1.f}) {
+    advance(state, Progress());
+    float smallest = kInfinity;
+    for (std::size_t i = 0; i < state.tree.size(); ++i)
+      if (const ElementId e(i); state.tree[e].is_leaf_cell())
+        smallest = std::min(smallest, state.tree.cell_size(e));
+    EXPECT_GT(smallest, 0.99f * scale * 0.5f * 0.05f);
+    EXPECT_LT(smallest, last);
+    last = smallest;
+  }
 }
 
 TEST_P(Iterations, EndWhereOneStepDoes) {

@@ -33,7 +33,7 @@ float ErrorHistogram::lower_edge(std::size_t bin) {
 float ErrorHistogram::threshold_for(std::size_t k) const {
   std::size_t above = 0;
   for (std::size_t bin = kBins; bin-- > 0;) {
-    if (above + counts_[bin] > k) return lower_edge(above >= k / 2 ? bin + 1 : bin);
+    if (above + counts_[bin] > k) return lower_edge(above > 0 && above >= k / 2 ? bin + 1 : bin);
     above += counts_[bin];
   }
   return 1.f;

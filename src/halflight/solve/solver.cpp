@@ -25,6 +25,7 @@ namespace {
 // docs/design/refinement.md.
 constexpr float kThresholdPerError = 0.02f;
 constexpr float kThresholdRatio = 4.f;  // between levels
+constexpr float kFeatureRatio = 2.f;    // of feature sizes
 // Of the first iteration to the first level, when iterations are to be short.
 constexpr float kFirstThreshold = 16.f;
 constexpr float kBlindCells = 8.f;  // RefineOptions::largest_blind_cell in feature sizes
@@ -102,6 +103,11 @@ int levels_of_links(const SolveOptions& options) {
   return options.levels - (options.links == LinkMaker::sampled ? 1 : 0);
 }
 
+// Until threshold and feature sizes are those asked for.
+int levels_left(const SolverState& state) {
+  return std::max(0, state.options.levels - 1 - state.schedule.level);
+}
+
 // Threshold and tolerances of the level that comes next, by the light that is there now.
 void begin_level(SolverState& state) {
   float mean = 0.f;
@@ -114,10 +120,9 @@ void begin_level(SolverState& state) {
     update_tolerance(state, mean);
     if (state.options.importance) weigh_by_importance(state);
   }
-  const int levels_left = state.options.levels - 1 - state.schedule.level;
   state.schedule.irradiance_threshold =
       kThresholdPerError * state.options.error * mean *
-      std::pow(kThresholdRatio, static_cast<float>(std::max(0, levels_left)));
+      std::pow(kThresholdRatio, static_cast<float>(levels_left(state)));
 }
 
 // Error of a link in units of what its receiver tolerates at this level. Links whose source was
@@ -202,6 +207,7 @@ void refine_pairs(SolverState& state, std::vector<ElementPair> pairs, bool shape
   RefineOptions options;
   options.irradiance_threshold = record.irradiance_threshold;
   options.feature_sizes = &state.feature_sizes;
+  options.feature_scale = std::pow(kFeatureRatio, static_cast<float>(levels_left(state)));
   options.finest_cell = finest_cell(state);
   options.largest_blind_cell = 2.f * kBlindCells;
   options.most_links = state.options.most_links;

@@ -191,10 +191,13 @@ void push(SolverState& state, SweepPlan& plan) {
       plan.arriving[plan.number[e]] += plan.arriving[plan.number[tree[e].parent]];
   }
   parallel_for(top, kGrain, [&](std::size_t i) {
-    const ElementId e(i);
-    if (tree[e].is_cluster() || !inherits(e)) return;
-    const DirectionalIrradiance& from_clusters = plan.arriving[plan.number[tree[e].parent]];
-    if (from_clusters.any()) state.irradiance[e] += from_clusters.irradiance(tree.normal(e));
+    const ElementId cluster(i);
+    if (!tree[cluster].is_cluster()) return;
+    const DirectionalIrradiance& arriving = plan.arriving[plan.number[cluster]];
+    if (!arriving.any()) return;
+    for (const ElementId e : tree[cluster].children())
+      if (!tree[e].is_cluster() && inherits(e))
+        state.irradiance[e] += arriving.irradiance(tree.normal(e));
   });
   for (std::size_t i = top; i < tree.size(); ++i)
     if (inherits(ElementId(i)))

@@ -63,7 +63,7 @@ class Oracle {
       return {finer, {}};
     if (!can_refine) {
       Verdict verdict = accept(r, s, kFinalSamples, bounds);
-      if (!accept_all_) verdict.link.error = 0.f;
+      if (!accept_all_ && options_.feature_scale == 1.f) verdict.link.error = 0.f;
       return verdict;
     }
 
@@ -105,9 +105,8 @@ class Oracle {
   }
 
   float feature_size(ElementId e) const { return (*options_.feature_sizes)[e]; }
-  float finest(ElementId cell) const {
-    return smallest_cell(feature_size(cell), options_.finest_cell);
-  }
+  float gate(ElementId e) const { return options_.feature_scale * feature_size(e); }
+  float finest(ElementId cell) const { return smallest_cell(gate(cell), options_.finest_cell); }
 
   TransferScene received_by(ElementId r) const {
     TransferScene scene = scene_;
@@ -117,12 +116,13 @@ class Oracle {
 
   bool is_blind(ElementId r) const {
     return !scene_.tree[r].is_cluster() &&
-           scene_.tree.cell_size(r) > options_.largest_blind_cell * finest(r);
+           scene_.tree.cell_size(r) >
+               options_.largest_blind_cell * smallest_cell(feature_size(r), options_.finest_cell);
   }
 
   bool can_split(ElementId e) const {
     const Element& element = scene_.tree[e];
-    if (element.is_cluster()) return !element.is_leaf() && element.diameter() > feature_size(e);
+    if (element.is_cluster()) return !element.is_leaf() && element.diameter() > gate(e);
     return !element.is_leaf() || scene_.tree.cell_size(e) > 2.f * finest(e);
   }
 

@@ -28,6 +28,9 @@ struct RefineOptions {
   // s of each element: the smallest shadow that counts there, metres. Clusters are not opened
   // below it: what is inside is smaller than any shadow asked for, and receives and sends as one.
   const IdVector<ElementId, float>* feature_sizes = nullptr;
+  // By what feature sizes are multiplied as long as coarse elements will do. Pairs that only this
+  // keeps from being refined are links that a later call finds to fail.
+  float feature_scale = 1.f;
   // Cells are not split below half their feature size, nor below this (smallest_cell).
   float finest_cell = 0.f;
   // Cells larger than this many of the smallest ones are split whatever their samples say, as
