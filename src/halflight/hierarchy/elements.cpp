@@ -58,6 +58,7 @@ ElementTree::ElementTree(const Geometry& geometry, const Surfaces& surfaces,
   const std::vector<bool> used = inhabited(clusters, live);
   std::vector<std::pair<ElementId, std::uint32_t>> open{{ElementId(0), clusters.root}};
   elements_.push_back({});
+  levels_ = {{0, 1}};
   for (std::size_t next = 0; next < open.size(); ++next) {
     const auto [parent, cluster_index] = open[next];
     const auto& cluster = clusters.clusters[cluster_index];
@@ -81,8 +82,11 @@ ElementTree::ElementTree(const Geometry& geometry, const Surfaces& surfaces,
         e.cell_upper = surfaces[s].uv_upper;
         side_roots_[side] = elements_.push_back(e);
       }
+    const auto last = static_cast<std::uint32_t>(elements_.size());
     elements_[parent].first_child = first;
-    elements_[parent].child_count = static_cast<std::uint32_t>(elements_.size()) - first;
+    elements_[parent].child_count = last - first;
+    if (parent.value >= levels_.back().first) levels_.push_back({first, first});
+    levels_.back().last = last;
   }
   initial_size_ = elements_.size();
   crossings_.resize(initial_size_);

@@ -61,6 +61,9 @@ class ElementTree {
   std::size_t size() const { return elements_.size(); }
   std::size_t initial_size() const { return initial_size_; }  // clusters and whole sides come first
   std::size_t cluster_total() const { return cluster_total_; }
+  // Clusters and whole sides as they lie below the root: all of depth d are consecutive.
+  std::size_t depth() const { return levels_.size(); }
+  IdRange<ElementId> level(std::size_t d) const { return levels_[d]; }
   const Element& operator[](ElementId id) const { return elements_[id]; }
   const Surfaces& surfaces() const { return *surfaces_; }
   const Geometry& geometry() const { return *geometry_; }
@@ -117,6 +120,7 @@ class ElementTree {
   IdVector<ElementId, Crossing> crossings_;  // of cells
   IdVector<SideId, ElementId> side_roots_;
   std::vector<ElementId> cluster_elements_;
+  std::vector<IdRange<ElementId>> levels_;
   std::vector<Fragment> fragments_;
   std::vector<Vec2> fragment_corners_;
   std::size_t initial_size_ = 0, cluster_total_ = 0;

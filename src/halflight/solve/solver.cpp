@@ -463,7 +463,7 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
   if (stage == Stage::refine) refine_links(state, k, progress, record);
   if (stage == Stage::shape) shape_elements(state, k, progress, record);
   if (stage == Stage::sample) sample_links(state, k, progress, record);
-  if (stage != Stage::converge) state.row_limits.clear();
+  if (record.refined > 0 || stage == Stage::sample) state.row_limits.clear();
   record.refine_seconds = seconds_since(start);
   // Of the units that were chosen, by what earlier iterations took.
   record.predicted_seconds = state.costs.predict(stage, record.refined, size, sweeps);

@@ -177,31 +177,37 @@ void gather(SolverState& state, SweepPlan& plan, const Send& sent) {
   plan.inner.hand_out(state, sent);
 }
 
-// Parents come before their children, so one pass in id order hands everything down: all but to
-// receivers whose sampled links bring the whole light.
+template <class Visit>
+void for_level(const ElementTree& tree, std::size_t depth, const Visit& visit) {
+  const IdRange<ElementId> level = tree.level(depth);
+  parallel_for(level.size(), kGrain, [&](std::size_t i) { visit(level[i]); });
+}
+
+// From each cell to its parts.
+void push_down(SolverState& state, ElementId cell) {
+  for (const ElementId part : state.tree[cell].children()) {
+    if (state.sampled[part] == state.sampled[cell])
+      state.irradiance[part] += state.irradiance[cell];
+    push_down(state, part);
+  }
+}
+
+// Hands everything down: all but to receivers whose sampled links bring the whole light.
 void push(SolverState& state, SweepPlan& plan) {
   const ElementTree& tree = state.tree;
-  const std::size_t top = tree.initial_size();
-  const auto inherits = [&](ElementId e) {
-    return state.sampled[e] == state.sampled[tree[e].parent];
-  };
-  for (std::size_t i = 1; i < top; ++i) {
-    const ElementId e(i);
-    if (tree[e].is_cluster() && inherits(e))
-      plan.arriving[plan.number[e]] += plan.arriving[plan.number[tree[e].parent]];
-  }
-  parallel_for(top, kGrain, [&](std::size_t i) {
-    const ElementId cluster(i);
-    if (!tree[cluster].is_cluster()) return;
-    const DirectionalIrradiance& arriving = plan.arriving[plan.number[cluster]];
-    if (!arriving.any()) return;
-    for (const ElementId e : tree[cluster].children())
-      if (!tree[e].is_cluster() && inherits(e))
-        state.irradiance[e] += arriving.irradiance(tree.normal(e));
-  });
-  for (std::size_t i = top; i < tree.size(); ++i)
-    if (inherits(ElementId(i)))
-      state.irradiance[ElementId(i)] += state.irradiance[tree[ElementId(i)].parent];
+  for (std::size_t depth = 0; depth < tree.depth(); ++depth)
+    for_level(tree, depth, [&](ElementId e) {
+      if (!tree[e].is_cluster()) return push_down(state, e);
+      const DirectionalIrradiance& arriving = plan.arriving[plan.number[e]];
+      if (!arriving.any()) return;
+      for (const ElementId child : tree[e].children()) {
+        if (state.sampled[child] != state.sampled[e]) continue;
+        if (tree[child].is_cluster())
+          plan.arriving[plan.number[child]] += arriving;
+        else
+          state.irradiance[child] += arriving.irradiance(tree.normal(child));
+      }
+    });
 }
 
 // By what the light that links bring to a leaf is multiplied, so that surroundings of radiosity 1
@@ -251,33 +257,42 @@ Change change_of_radiosity(const SolverState& state) {
   });
 }
 
+void set_mean_of_children(SolverState& state, ElementId e) {
+  const ElementTree& tree = state.tree;
+  Rgb power(0.f), emitted(0.f);
+  float area = 0.f;
+  for (const ElementId child : tree[e].children()) {
+    power += tree[child].area * state.radiosity[child];
+    emitted += tree[child].area * state.exitance[child];
+    area += tree[child].area;
+  }
+  state.radiosity[e] = power / std::max(area, 1e-30f);
+  state.exitance[e] = emitted / std::max(area, 1e-30f);
+}
+
+void pull_up(SolverState& state, ElementId cell) {
+  if (state.tree[cell].is_leaf()) {
+    state.radiosity[cell] = state.exitance[cell] + state.reflectance[cell] * state.irradiance[cell];
+    return;
+  }
+  for (const ElementId part : state.tree[cell].children()) pull_up(state, part);
+  set_mean_of_children(state, cell);
+}
+
 }  // namespace
 
 void pull(SolverState& state) {
   const ElementTree& tree = state.tree;
-  parallel_for(tree.size(), kGrain, [&](std::size_t i) {
-    const ElementId e(i);
-    if (tree[e].is_leaf_cell())
-      state.radiosity[e] = state.exitance[e] + state.reflectance[e] * state.irradiance[e];
-  });
-  for (std::size_t i = tree.size(); i-- > 0;) {
-    const ElementId e(i);
-    if (tree[e].is_leaf()) continue;
-    Rgb power(0.f), emitted(0.f);
-    float area = 0.f;
-    for (const ElementId child : tree[e].children()) {
-      power += tree[child].area * state.radiosity[child];
-      emitted += tree[child].area * state.exitance[child];
-      area += tree[child].area;
-    }
-    state.radiosity[e] = power / std::max(area, 1e-30f);
-    state.exitance[e] = emitted / std::max(area, 1e-30f);
-  }
+  for (std::size_t depth = tree.depth(); depth-- > 0;)
+    for_level(tree, depth, [&](ElementId e) {
+      tree[e].is_cluster() ? set_mean_of_children(state, e) : pull_up(state, e);
+    });
 }
 
 Sweeps sweep(SolverState& state, int most_sweeps) {
   SweepPlan plan(state);
-  if (state.row_limits.empty()) state.row_limits = find_row_limits(state, plan);
+  if (state.row_limits.size() != state.tree.size())
+    state.row_limits = find_row_limits(state, plan);
   Sweeps done;
   while (done.count < most_sweeps && !done.converged) {
     plan.shown.update(state);
