@@ -1,0 +1,207 @@
+// Wall time to an error of irradiance at many sensors, beside the path tracer on the same machine
+// in the same run.
+//
+//   bench_time_to_error SENSORS SCENE...
+//
+// Sensors lie at random over the sides that can see light, by area. Times start when the scene is
+// loaded and its ray structure built, which both need. NRMSE is free of the truth's own noise: two
+// independent path-traced estimates are subtracted from what is judged, and the two differences
+// multiplied. Median: of |E - truth| / max(truth, 1 % of the mean). One line of JSON for each
+// setting, then the time at which each error is reached, along the lower hull of the settings.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <optional>
+#include <thread>
+
+#include "halflight/base/parallel.h"
+#include "halflight/hierarchy/live_sides.h"
+#include "halflight/io/load_scene.h"
+#include "halflight/output/read_light.h"
+#include "halflight/rays/path_tracer.h"
+#include "halflight/rays/sampling.h"
+
+namespace halflight {
+namespace {
+
+constexpr std::array kTargets{0.1, 0.05, 0.02, 0.01};
+constexpr int kPathsOfTruth = 256;  // of each of the two
+constexpr std::array kPaths{2, 4, 8, 16, 32, 64, 128, 256};
+constexpr double kLongest = 10.0;  // seconds: no slower setting after one that takes so long
+
+struct Setting {
+  float error;
+  int gather_rays;
+};
+constexpr std::array kSettings{Setting{2.f, 0},    Setting{1.f, 0},     Setting{0.5f, 0},
+                               Setting{0.2f, 0},   Setting{0.1f, 0},    Setting{0.05f, 0},
+                               Setting{0.02f, 0},  Setting{0.01f, 0},   Setting{0.1f, 32},
+                               Setting{0.05f, 64}, Setting{0.02f, 256}, Setting{0.01f, 1024}};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::vector<ReadingPoint> scatter(const World& world, std::size_t count) {
+  const Geometry& g = world.geometry;
+  const Surfaces surfaces = build_surfaces(g);
+  const auto live = find_live_sides(world.scene, g, surfaces, world.rays);
+  std::vector<double> before{0.0};
+  for (std::size_t i = 0; i < live.size(); ++i)
+    before.push_back(before.back() +
+                     (live[SideId(i)] ? static_cast<double>(surfaces[SideId(i)].area) : 0.0));
+  std::vector<ReadingPoint> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double at = static_cast<double>(to_unit_float(hash(i, 1))) * before.back();
+    const auto found = std::upper_bound(before.begin(), before.end(), at) - before.begin() - 1;
+    const SideId side(std::min<std::size_t>(static_cast<std::size_t>(found), live.size() - 1));
+    const Surface& s = surfaces[side];
+    const auto* areas = &surfaces.cumulative_area[s.first_triangle];
+    const float part = to_unit_float(hash(i, 2)) * s.area;
+    const auto k = std::min<std::ptrdiff_t>(
+        std::upper_bound(areas, areas + s.triangle_count, part) - areas, s.triangle_count - 1);
+    const TriangleId t = surfaces.triangles[s.first_triangle + static_cast<std::size_t>(k)];
+    points.push_back(
+        {g.point(t, uniform_triangle(random_shift(hash(i, 3)))), surfaces.normal(side), t});
+  }
+  return points;
+}
+
+std::vector<float> trace_paths(const World& world, const std::vector<ReadingPoint>& points,
+                               int paths, std::uint64_t seed) {
+  const PathTracer tracer(world);
+  std::vector<float> values(points.size());
+  parallel_for(points.size(), 16, [&](std::size_t i) {
+    values[i] = average(tracer
+                            .estimate_irradiance(points[i].position, points[i].normal,
+                                                 static_cast<std::uint32_t>(paths), hash(seed, i))
+                            .mean);
+  });
+  return values;
+}
+
+struct Truth {
+  std::vector<float> a, b;
+  double mean = 0.0;
+};
+
+struct Judged {
+  double nrmse = 0.0, median = 0.0;
+};
+Judged judge(const std::vector<float>& values, const Truth& truth) {
+  double product = 0.0;
+  std::vector<double> relative;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto v = static_cast<double>(values[i]), a = static_cast<double>(truth.a[i]),
+               b = static_cast<double>(truth.b[i]);
+    product += (v - a) * (v - b);
+    relative.push_back(std::abs(v - 0.5 * (a + b)) / std::max(0.5 * (a + b), 0.01 * truth.mean));
+  }
+  std::nth_element(relative.begin(),
+                   relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2),
+                   relative.end());
+  return {std::sqrt(std::max(0.0, product / static_cast<double>(values.size()))) / truth.mean,
+          relative[relative.size() / 2]};
+}
+
+struct Run {
+  double seconds = 0.0;
+  Judged error;
+};
+
+// Where the line through the fastest runs reaches the error, both scales logarithmic; none: never.
+std::optional<double> seconds_to(const std::vector<Run>& runs, double target) {
+  std::optional<double> best;
+  for (const Run& a : runs) {
+    if (a.error.nrmse <= target) best = std::min(best.value_or(a.seconds), a.seconds);
+    for (const Run& b : runs) {
+      if (!(a.error.nrmse > target && b.error.nrmse < target && b.seconds > a.seconds)) continue;
+      const double t = std::log(a.error.nrmse / target) / std::log(a.error.nrmse / b.error.nrmse);
+      const double seconds = a.seconds * std::pow(b.seconds / a.seconds, t);
+      best = std::min(best.value_or(seconds), seconds);
+    }
+  }
+  return best;
+}
+
+void print(const char* who, const std::string& setting, const Run& run) {
+  fmt::print(
+      R"({{"who": "{}", "setting": "{}", "seconds": {:.4f}, "nrmse": {:.5f}, "median": {:.5f}}})"
+      "\n",
+      who, setting, run.seconds, run.error.nrmse, run.error.median);
+  std::fflush(stdout);
+}
+
+int compare(std::size_t sensors, const char* path) {
+  auto scene = load_scene(path, {});
+  if (!scene) {
+    fmt::print(stderr, "{}: {}\n", path, scene.error().what);
+    return 1;
+  }
+  const auto world = make_world(std::move(*scene));
+  const std::vector<ReadingPoint> points = scatter(*world, sensors);
+  fmt::print(R"({{"scene": "{}", "triangles": {}, "sensors": {}, "threads": {}}})"
+             "\n",
+             path, world->geometry.triangles.size(), points.size(), thread_count());
+
+  Truth truth{trace_paths(*world, points, kPathsOfTruth, 101),
+              trace_paths(*world, points, kPathsOfTruth, 202)};
+  for (std::size_t i = 0; i < points.size(); ++i)
+    truth.mean += 0.5 * static_cast<double>(truth.a[i] + truth.b[i]);
+  truth.mean /= static_cast<double>(points.size());
+
+  std::vector<Run> ours, theirs;
+  for (const Setting& setting : kSettings) {
+    const auto start = std::chrono::steady_clock::now();
+    SolverState state = make_state(world, {.error = setting.error});
+    while (!state.done()) advance(state, Progress());
+    const double solved = seconds_since(start);
+    const SolutionReader reader(
+        state, {.gather_rays = setting.gather_rays, .direct = kMeshReading.direct});
+    std::vector<float> values;
+    for (const Reading& r : reader(points)) values.push_back(average(r.irradiance()));
+    ours.push_back({seconds_since(start), judge(values, truth)});
+    print("halflight",
+          fmt::format("error {:g} gather {} solve {:.3f} s", setting.error, setting.gather_rays,
+                      solved),
+          ours.back());
+    if (ours.back().seconds > kLongest) break;
+  }
+  for (const int paths : kPaths) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<float> values = trace_paths(*world, points, paths, 7);
+    theirs.push_back({seconds_since(start), judge(values, truth)});
+    print("path tracer", fmt::format("{} paths", paths), theirs.back());
+    if (theirs.back().seconds > kLongest) break;
+  }
+  for (const double target : kTargets) {
+    const auto a = seconds_to(ours, target), b = seconds_to(theirs, target);
+    const auto text = [](std::optional<double> s) {
+      return s ? fmt::format("{:.3f}", *s) : "null";
+    };
+    fmt::print(R"({{"target": {}, "halflight": {}, "path_tracer": {}, "times": {}}})"
+               "\n",
+               target, text(a), text(b), a && b ? fmt::format("{:.2f}", *b / *a) : "null");
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace halflight
+
+int main(int argc, char** argv) {
+  const long sensors = argc > 2 ? std::atol(argv[1]) : 0;
+  if (sensors < 1) {
+    std::fputs("bench_time_to_error: SENSORS SCENE...\n", stderr);
+    return 1;
+  }
+  int failed = 0;
+  for (int i = 2; i < argc; ++i)
+    failed |= halflight::compare(static_cast<std::size_t>(sensors), argv[i]);
+  return failed;
+}
