@@ -9,6 +9,8 @@ namespace halflight {
 
 namespace {
 
+constexpr int kLeastSkyRays = 64;
+
 // A surface this much brighter than the scene's mean radiosity is read like an emitter.
 constexpr float kBright = 5.f;
 constexpr float kFinestEdge = 1e-3f;  // of the scene's diagonal
@@ -56,6 +58,16 @@ ReadOptions with_feature_size(ReadOptions options, float feature_size) {
   return options;
 }
 
+// Of leaf cells; with refined links, direct light of emitters as well.
+IdVector<ElementId, Rgb> indirect_irradiance(const SolverState& state) {
+  IdVector<ElementId, Rgb> indirect = state.irradiance;
+  parallel_for(indirect.size(), 4096, [&](std::size_t i) {
+    const ElementId e(i);
+    indirect[e] = glm::max(indirect[e] - state.given_light[e], Rgb(0.f));
+  });
+  return indirect;
+}
+
 }  // namespace
 
 float finest_mesh_edge(const SolverState& state) {
@@ -76,13 +88,15 @@ SolutionReader::SolutionReader(const SolverState& state, const ReadOptions& opti
       options_(with_feature_size(options, state.options.feature_size)),
       emitters_(*state.visibility, find_emitters(*state.world)),
       bright_(*state.visibility, find_bright_reflectors(state, is_bright_)),
-      irradiance_(state) {}
+      irradiance_(state) {
+  if (options.gather_rays == 0) indirect_.emplace(state.tree, indirect_irradiance(state));
+}
 
 Rgb SolutionReader::direct(const Vec3& x, const Vec3& n, Vec2 shift) const {
   return emitters_.irradiance(x, n, options_.direct, shift) +
          punctual_irradiance(*state_->visibility, x, n, options_.direct.feature_size) +
-         sky_irradiance(*state_->visibility, x, n, options_.gather_rays, shift,
-                        options_.direct.feature_size);
+         sky_irradiance(*state_->visibility, x, n, std::max(options_.gather_rays, kLeastSkyRays),
+                        shift, options_.direct.feature_size);
 }
 
 Rgb SolutionReader::reflected_radiosity(const RayHit& hit) const {
@@ -109,6 +123,7 @@ Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
 }
 
 Reading SolutionReader::read(const ReadingPoint& point) const {
+  if (indirect_ && point.triangle.valid()) return read_from_cell(point);
   Reading reading;
   reading.direct = direct(point.position, point.normal);
   if (!point.direct_only) reading.indirect = gather(point.position, point.normal);
@@ -127,6 +142,17 @@ bool SolutionReader::matters_to_nobody(const ReadingPoint& point) const {
   if (state_->importance.empty() || !point.triangle.valid()) return false;
   const ElementId leaf = leaf_at(point);
   return leaf.valid() && state_->importance[leaf] < kNegligibleImportance;
+}
+
+Reading SolutionReader::read_from_cell(const ReadingPoint& point) const {
+  const ElementId leaf = leaf_at(point);
+  if (!leaf.valid()) return {};
+  // Refined links bring the light of emitters, too, and do not tell it from the rest.
+  if (state_->sampled[leaf] == 0) return of_cell(point);
+  Reading reading;
+  reading.direct = direct(point.position, point.normal);
+  if (!point.direct_only) reading.indirect = indirect_->at(leaf, point.position);
+  return reading;
 }
 
 Reading SolutionReader::of_cell(const ReadingPoint& point) const {

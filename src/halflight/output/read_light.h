@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "halflight/output/light_reader.h"
 #include "halflight/output/smooth_irradiance.h"
@@ -13,7 +14,8 @@
 namespace halflight {
 
 struct ReadOptions {
-  int gather_rays = 1024;  // of each point's hemisphere
+  // Of each point's hemisphere. None: indirect light is that of the cell, made linear over it.
+  int gather_rays = 1024;
   DirectLightOptions direct;
 };
 
@@ -53,6 +55,7 @@ class SolutionReader {
  private:
   // Of a point on a triangle.
   ElementId leaf_at(const ReadingPoint& point) const;
+  Reading read_from_cell(const ReadingPoint& point) const;
   bool matters_to_nobody(const ReadingPoint& point) const;
   // Light reflected at least once.
   Rgb gather(const Vec3& x, const Vec3& n) const;
@@ -65,6 +68,7 @@ class SolutionReader {
   IdVector<SideId, std::uint8_t> is_bright_;
   EmitterTree bright_;
   SmoothIrradiance irradiance_;
+  std::optional<SmoothIrradiance> indirect_;  // where there are no rays to gather with
 };
 
 }  // namespace halflight

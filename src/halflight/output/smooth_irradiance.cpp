@@ -1,5 +1,7 @@
 #include "halflight/output/smooth_irradiance.h"
 
+#include <utility>
+
 namespace halflight {
 namespace {
 
@@ -11,14 +13,14 @@ Rgb minmod(const Rgb& a, const Rgb& b) {
 }
 
 // Area-weighted over the leaves of every cell.
-IdVector<ElementId, Rgb> mean_irradiances(const SolverState& state) {
-  const ElementTree& tree = state.tree;
+IdVector<ElementId, Rgb> mean_irradiances(const ElementTree& tree,
+                                          const IdVector<ElementId, Rgb>& of_leaves) {
   IdVector<ElementId, Rgb> mean(tree.size(), Rgb(0.f));
   for (std::size_t i = tree.size(); i-- > 0;) {
     const ElementId e(i);
     if (tree[e].is_cluster()) continue;
     if (tree[e].is_leaf()) {
-      mean[e] = state.irradiance[e];
+      mean[e] = of_leaves[e];
       continue;
     }
     float area = 0.f;
@@ -33,10 +35,9 @@ IdVector<ElementId, Rgb> mean_irradiances(const SolverState& state) {
 
 }  // namespace
 
-SmoothIrradiance::SmoothIrradiance(const SolverState& state)
-    : state_(&state), slopes_(state.tree.size()) {
-  const ElementTree& tree = state.tree;
-  const IdVector<ElementId, Rgb> mean = mean_irradiances(state);
+SmoothIrradiance::SmoothIrradiance(const ElementTree& tree, IdVector<ElementId, Rgb> of_leaves)
+    : tree_(&tree), of_leaves_(std::move(of_leaves)), slopes_(tree.size()) {
+  const IdVector<ElementId, Rgb> mean = mean_irradiances(tree, of_leaves_);
   for (std::size_t i = 0; i < tree.size(); ++i) {
     const ElementId e(i);
     if (tree[e].is_cluster() || tree[e].is_leaf()) continue;
@@ -56,11 +57,10 @@ SmoothIrradiance::SmoothIrradiance(const SolverState& state)
 }
 
 Rgb SmoothIrradiance::at(ElementId leaf, const Vec3& position) const {
-  const Surface& surface = state_->tree.surfaces()[state_->tree[leaf].side];
-  const Vec2 from_centre =
-      surface.to_plane(position) - surface.to_plane(state_->tree[leaf].center());
+  const Surface& surface = tree_->surfaces()[(*tree_)[leaf].side];
+  const Vec2 from_centre = surface.to_plane(position) - surface.to_plane((*tree_)[leaf].center());
   const Slopes& s = slopes_[leaf];
-  return glm::max(state_->irradiance[leaf] + from_centre.x * s.u + from_centre.y * s.v, Rgb(0.f));
+  return glm::max(of_leaves_[leaf] + from_centre.x * s.u + from_centre.y * s.v, Rgb(0.f));
 }
 
 }  // namespace halflight

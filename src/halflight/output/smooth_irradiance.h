@@ -7,11 +7,13 @@ namespace halflight {
 
 // Every cell takes its slopes from the splits that made it: along each axis of its surface, the
 // difference of the last two halves over their distance, limited (minmod) by the same at the split
-// before, so that noise and shadow edges make no overshoot. Means of cells stay as solved. Refers
-// to the state.
+// before, so that noise and shadow edges make no overshoot. Means of cells stay as they are. Refers
+// to the tree.
 class SmoothIrradiance {
  public:
-  explicit SmoothIrradiance(const SolverState& state);
+  explicit SmoothIrradiance(const SolverState& state)
+      : SmoothIrradiance(state.tree, state.irradiance) {}
+  SmoothIrradiance(const ElementTree& tree, IdVector<ElementId, Rgb> of_leaves);
 
   // At a point of the surface inside the leaf cell; not negative.
   Rgb at(ElementId leaf, const Vec3& position) const;
@@ -20,7 +22,8 @@ class SmoothIrradiance {
   struct Slopes {
     Rgb u{0.f}, v{0.f};  // change of irradiance per metre along the surface's axes
   };
-  const SolverState* state_;
+  const ElementTree* tree_;
+  IdVector<ElementId, Rgb> of_leaves_;
   IdVector<ElementId, Slopes> slopes_;
 };
 

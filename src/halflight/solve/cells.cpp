@@ -15,6 +15,8 @@ constexpr std::uint32_t kMostPoints = 16;
 constexpr int kSkyRays = 16;  // of each point
 constexpr DirectLightOptions kCellDirectLight{
     .shadow_rays = 8, .penumbra_rays = 8, .largest_group_share = 0.05f, .smallest_angle = 0.01f};
+constexpr float kErrorOfAllShadowRays = 0.05f;  // larger ones take fewer, in proportion
+constexpr int kFewestShadowRays = 2;
 
 constexpr float kFinestCell = 1e-3f;  // of the scene's diagonal, whatever the feature size
 
@@ -45,6 +47,12 @@ float received_power(const SolverState& state) {
   }));
 }
 
+int shadow_rays(const SolverState& state) {
+  const float all = static_cast<float>(kCellDirectLight.shadow_rays);
+  return std::clamp(static_cast<int>(all * kErrorOfAllShadowRays / state.options.error),
+                    kFewestShadowRays, kCellDirectLight.shadow_rays);
+}
+
 // By what has been known before, so that the number has nothing to do with what is found.
 std::uint32_t points_of(const SolverState& state, ElementId cell, float total_power) {
   const bool whole_and_small = state.tree.cell_size(cell) < 2.f * smallest_cell(state, cell);
@@ -61,6 +69,7 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uin
   const float s = state.feature_sizes[cell];
   DirectLightOptions options = kCellDirectLight;
   options.feature_size = s;
+  options.shadow_rays = options.penumbra_rays = shadow_rays(state);
   GivenLight result;
   float sum = 0.f, squares = 0.f;
   const Vec2 shift = random_shift(hash(cell.value, stream, 11));

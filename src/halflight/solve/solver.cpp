@@ -30,9 +30,9 @@ constexpr float kFeatureRatio = 2.f;    // of feature sizes
 constexpr float kFirstThreshold = 16.f;
 constexpr float kBlindCells = 8.f;  // RefineOptions::largest_blind_cell in feature sizes
 constexpr float kLeastTolerance = 0.15f;
-// Errors below this take more rays for each receiver, in proportion.
+// Smaller errors take more rays for each receiver, in proportion; larger ones fewer.
 constexpr float kErrorOfPlainSampling = 0.05f;
-constexpr float kMostOversampling = 8.f;
+constexpr float kLeastSampling = 0.125f, kMostSampling = 8.f;
 constexpr int kSweepsOfShortIteration = 2;
 constexpr int kFirstGuessOfSweeps = 10;
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
@@ -264,7 +264,7 @@ SampledLinkOptions sampled_link_options(const SolverState& state) {
   SampledLinkOptions options;
   options.inside = state.inside.get();
   const float more =
-      std::clamp(kErrorOfPlainSampling / state.options.error, 1.f, kMostOversampling);
+      std::clamp(kErrorOfPlainSampling / state.options.error, kLeastSampling, kMostSampling);
   options.rays_per_cell = static_cast<int>(more * static_cast<float>(options.rays_per_cell));
   options.rays_per_cluster = static_cast<int>(more * static_cast<float>(options.rays_per_cluster));
   return options;

@@ -291,8 +291,7 @@ void pull(SolverState& state) {
 
 Sweeps sweep(SolverState& state, int most_sweeps) {
   SweepPlan plan(state);
-  if (state.row_limits.size() != state.tree.size())
-    state.row_limits = find_row_limits(state, plan);
+  if (state.row_limits.size() != state.tree.size()) state.row_limits = find_row_limits(state, plan);
   Sweeps done;
   while (done.count < most_sweeps && !done.converged) {
     plan.shown.update(state);
