@@ -60,6 +60,21 @@ TEST_F(SolveCommand, SensorsGoToStandardOutputWithoutAFile) {
   EXPECT_EQ(irradiance_of(text("out")).size(), 30u);
 }
 
+TEST_F(SolveCommand, SensorsWithoutAGatherReadNearlyTheSame) {
+  folder_.write("with_air.txt", sensors(1.0) + "2 2 1 0 1 0\n");
+  const std::string common =
+      "solve room.obj --feature-size 25cm --progress none --points with_air.txt";
+  ASSERT_EQ(run(common + " --points-out gathered.txt"), 0) << text("err");
+  ASSERT_EQ(run(common + " --points-out cells.txt --final-gather 0"), 0) << text("err");
+  const auto gathered = irradiance_of(text("gathered.txt")),
+             cells = irradiance_of(text("cells.txt"));
+  ASSERT_EQ(gathered.size(), 33u);
+  ASSERT_EQ(cells.size(), 33u);
+  EXPECT_NE(gathered, cells);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    EXPECT_NEAR(cells[i] / gathered[i], 1.f, 0.1f) << "sensor " << i / 3;
+}
+
 TEST_F(SolveCommand, ReportBalancesItsEnergy) {
   ASSERT_EQ(run("solve room.obj --feature-size 50cm --progress none --report report.json"), 0);
   const auto report = read_json(path("report.json"));
@@ -122,6 +137,8 @@ TEST_F(SolveCommand, RejectsBadUseInOneLine) {
                                 "solve room.obj --unit mile",
                                 "solve room.obj --up x",
                                 "solve room.obj --points missing.txt",
+                                "solve room.obj --points sensors.txt --final-gather -3",
+                                "solve room.obj --points sensors.txt --final-gather some",
                                 "solve room.obj --sky 1,2",
                                 "solve",
                                 "solve room.obj --sky -1,0,0",

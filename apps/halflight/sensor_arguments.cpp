@@ -1,10 +1,28 @@
 #include "sensor_arguments.h"
 
+#include <fmt/format.h>
+
 #include "halflight/base/parallel.h"
+#include "halflight/base/quantities.h"
 #include "halflight/output/read_light.h"
 #include "halflight/rays/sensor_placement.h"
 
 namespace halflight::app {
+namespace {
+
+constexpr double kMostGatherRays = 1 << 20;
+
+// Negative: by the error aimed at.
+Result<int> resolve_gather_rays(const std::string& wish) {
+  if (wish == "auto") return -1;
+  const Result<double> rays = parse_count(wish);
+  if (!rays || !(*rays >= 0.0 && *rays <= kMostGatherRays))
+    return input_error(fmt::format("--final-gather '{}' is neither auto nor a count", wish), {},
+                       fmt::format("write auto, 0, or a number up to {}", kMostGatherRays));
+  return static_cast<int>(*rays);
+}
+
+}  // namespace
 
 CLI::Option* add_sensor_arguments(CLI::App& command, SensorArguments& arguments) {
   CLI::Option* points =
@@ -15,10 +33,18 @@ CLI::Option* add_sensor_arguments(CLI::App& command, SensorArguments& arguments)
                   "the sensors with \"Er Eg Eb\" added; standard output without it")
       ->type_name("FILE")
       ->needs(points);
+  command
+      .add_option("--final-gather", arguments.final_gather,
+                  "rays by which each sensor looks for indirect light; 0: what was found for the "
+                  "cell it lies in, much faster; auto: by the error aimed at")
+      ->type_name("auto|N")
+      ->capture_default_str();
   return points;
 }
 
 Result<std::vector<Sensor>> read_sensors(const SensorArguments& arguments) {
+  if (const auto rays = resolve_gather_rays(arguments.final_gather); !rays)
+    return tl::unexpected(rays.error());
   if (arguments.points.empty()) return std::vector<Sensor>();
   return halflight::read_sensors(arguments.points);
 }
@@ -33,8 +59,12 @@ Result<void> write_irradiance(const SensorArguments& arguments, const SolverStat
         place_sensor(world.geometry, world.rays, sensor.position, sensor.normal);
     points[i] = {placed.position, placed.normal, placed.triangle};
   });
+  ReadOptions options = sensor_reading(state);
+  const Result<int> rays = resolve_gather_rays(arguments.final_gather);
+  if (!rays) return tl::unexpected(rays.error());
+  if (*rays >= 0) options.gather_rays = *rays;
   std::vector<Rgb> irradiance;
-  for (const Reading& reading : SolutionReader(state, sensor_reading(state))(points))
+  for (const Reading& reading : SolutionReader(state, options)(points))
     irradiance.push_back(reading.irradiance());
   return write_sensor_table(arguments.points_out, sensor_table(sensors, irradiance));
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <CLI/App.hpp>
@@ -16,12 +17,13 @@ namespace halflight::app {
 struct SensorArguments {
   std::filesystem::path points;
   std::filesystem::path points_out;
+  std::string final_gather = "auto";
 };
 
 // Returns the option --points. `arguments` must live until the command has run.
 CLI::Option* add_sensor_arguments(CLI::App& command, SensorArguments& arguments);
 
-// None without --points.
+// None without --points. Errors: --final-gather is no number; what is wrong with the file.
 Result<std::vector<Sensor>> read_sensors(const SensorArguments& arguments);
 
 // Writes the irradiance at the sensors.

@@ -36,10 +36,10 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
       ->type_name("DUR");
   command
       .add_option("--links", arguments.links,
-                  "refined: by the error oracle alone; sampled: by rays on the elements it shaped "
-                  "(the default); N: no more than these")
+                  "refined: by the error oracle alone; sampled: by rays on the elements it shaped; "
+                  "auto: what measures best, sampled; N: no more than these")
       ->allow_extra_args(false)  // one for each --links
-      ->type_name("refined|sampled|N");
+      ->type_name("auto|refined|sampled|N");
   command
       .add_option("--importance", arguments.importance,
                   "a view (as for render --camera): light only counts for what is seen there")
@@ -88,14 +88,15 @@ Result<SolvePlan> resolve(const SolveArguments& arguments) {
     plan.goals.error = plan.options.error;
   }
   for (const std::string& links : arguments.links) {
-    if (links == "refined" || links == "sampled") {
+    if (links == "auto" || links == "refined" || links == "sampled") {
       plan.options.links = links == "refined" ? LinkMaker::refined : LinkMaker::sampled;
       continue;
     }
     const Result<double> most = parse_count(links);
     if (!most || !(*most >= 1.0))
-      return input_error(fmt::format("--links '{}' is neither refined, sampled nor a count", links),
-                         {}, "write it like 'sampled' or 250k");
+      return input_error(
+          fmt::format("--links '{}' is neither auto, refined, sampled nor a count", links), {},
+          "write it like 'sampled' or 250k");
     plan.goals.links = static_cast<std::size_t>(std::min(*most, 1e15));
     plan.options.most_links = std::min(plan.options.most_links, *plan.goals.links);
   }

@@ -111,15 +111,17 @@ Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
   const World& world = *state_->world;
   const Frame frame = Frame::from_normal(n);
   const Vec3 from = world.rays.lift(x, n);
+  // Points in the air lie in no cell.
+  const int rays = options_.gather_rays > 0 ? options_.gather_rays : kMeshReading.gather_rays;
   Rgb sum(0.f);
-  for (int k = 0; k < options_.gather_rays; ++k) {
+  for (int k = 0; k < rays; ++k) {
     const auto index = static_cast<std::uint32_t>(k);
     const Vec3 w = frame.to_world(cosine_hemisphere(r2_sequence(index)));
     const auto hit = world.rays.closest_hit(from, w, kInfinity, hash(index));
     if (!hit) continue;
     if (!is_bright_[state_->surfaces->side_hit(*hit)]) sum += reflected_radiosity(*hit);
   }
-  return sum / static_cast<float>(options_.gather_rays) + bright_.irradiance(x, n, options_.direct);
+  return sum / static_cast<float>(rays) + bright_.irradiance(x, n, options_.direct);
 }
 
 Reading SolutionReader::read(const ReadingPoint& point) const {
