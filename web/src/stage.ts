@@ -1,7 +1,7 @@
 // The canvas: lit meshes as the server sends them, cameras, and drawing no more often than needed.
 import * as THREE from 'three'
 import { Packet } from './packet'
-import { surfaceMaterial } from './surface'
+import { shared, surfaceMaterial } from './surface'
 import type { View } from './connection'
 
 const kFrameMilliseconds = 33
@@ -98,6 +98,7 @@ export class Stage {
     }
     this.light.needsUpdate = true
     this.version = packet.header.version
+    shared.lightScale.value = packet.header.scale
     this.draw()
     return true
   }
@@ -116,7 +117,7 @@ export class Stage {
     const step = Math.max(1, Math.floor(light.length / 20000))
     for (let i = 0; i < light.length; i += step) {
       const e = light[i]
-      const scale = 2 ** ((e >>> 27) - 24)
+      const scale = shared.lightScale.value * 2 ** ((e >>> 27) - 24)
       values.push((0.2126 * (e & 511) + 0.7152 * ((e >>> 9) & 511) + 0.0722 * ((e >>> 18) & 511)) * scale)
     }
     values.sort((a, b) => a - b)

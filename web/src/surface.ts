@@ -10,6 +10,7 @@ const kToneMaps: ToneMap[] = ['none', 'agx', 'neutral']
 // Shared by all materials: one change is seen by all.
 export const shared = {
   exposure: { value: 1 },
+  lightScale: { value: 1 }, // of the packed light
   toneMap: { value: 1 },
   show: { value: 0 },
   scale: { value: 1 }, // full scale of false colour
@@ -24,12 +25,13 @@ export const setToneMap = (map: ToneMap) => (shared.toneMap.value = kToneMaps.in
 const vertexShader = `
 in uint light;
 in float value;
+uniform float lightScale;
 out vec3 vIrradiance;
 out float vValue;
 out vec2 vUv;
 out vec3 vPosition;
 void main() {
-  float scale = exp2(float(light >> 27u) - 24.);
+  float scale = lightScale * exp2(float(light >> 27u) - 24.);
   vIrradiance = vec3(float(light & 511u), float((light >> 9u) & 511u), float((light >> 18u) & 511u)) * scale;
   vValue = value;
   vUv = uv;

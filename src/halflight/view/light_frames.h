@@ -31,7 +31,8 @@ class LightFrames {
     std::uint32_t epoch = 0;
     std::uint64_t version = 0;
     float exposure = 1.f;
-    std::vector<std::uint32_t> light;         // RGB9_E5 of every vertex
+    float scale = 0.f;  // a power of two near the mean irradiance, as floats of 5 bits span little
+    std::vector<std::uint32_t> light;         // RGB9_E5 of every vertex's irradiance over the scale
     std::vector<std::uint64_t> last_changes;  // versions, of blocks of kBlock vertices
   };
   static constexpr std::size_t kBlock = 512;
