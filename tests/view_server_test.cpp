@@ -89,7 +89,8 @@ class ViewServer : public ::testing::Test {
         [this](const WebRequest& request) {
           const std::lock_guard lock(mutex_);
           requests_.push_back(request);
-          if (request.path == "large") return web_text(200, "text/plain", std::string(1 << 25, 'x'));
+          if (request.path == "large")
+            return web_text(200, "text/plain", std::string(1 << 25, 'x'));
           if (request.path == "events") {
             WebReply reply;
             reply.events = []() -> std::optional<std::string> {
@@ -137,16 +138,15 @@ TEST_F(ViewServer, ServesThePageToWhoKnowsTheToken) {
 }
 
 TEST_F(ViewServer, RefusesOtherTokensPathsAndMethods) {
-  for (const char* path : {"/", "/page", "/x/page", "/0123456789abcdef0123456789abcdeF/page",
-                           "/0123456789abcdef0123456789abcde/page",
-                           "//0123456789abcdef0123456789abcdef/page",
-                           "/../0123456789abcdef0123456789abcdef/page", "/%00/page"})
+  for (const char* path :
+       {"/", "/page", "/x/page", "/0123456789abcdef0123456789abcdeF/page",
+        "/0123456789abcdef0123456789abcde/page", "//0123456789abcdef0123456789abcdef/page",
+        "/../0123456789abcdef0123456789abcdef/page", "/%00/page"})
     EXPECT_THAT(answer_to(get(path)), StartsWith("HTTP/1.1 403")) << path;
   EXPECT_EQ(handled(), 0u);
   for (const char* method : {"PUT", "DELETE", "PATCH", "OPTIONS", "HEAD"}) {
-    const std::string request =
-        fmt::format("{} {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", method,
-                    inside("page"), host());
+    const std::string request = fmt::format(
+        "{} {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", method, inside("page"), host());
     EXPECT_THAT(answer_to(request), StartsWith("HTTP/1.1 405")) << method;
   }
   EXPECT_EQ(handled(), 0u);
@@ -171,12 +171,13 @@ TEST_F(ViewServer, RefusesOtherOriginsAndHosts) {
         std::string("Host: example.com\r\n")})
     EXPECT_THAT(answer_to(get(inside("page"), headers)), StartsWith("HTTP/1.1 403")) << headers;
   // A name that somebody else made point here.
-  const std::string rebound = fmt::format(
-      "GET {} HTTP/1.1\r\nHost: evil.example:{}\r\nConnection: close\r\n\r\n", inside("page"),
-      server_->port());
+  const std::string rebound =
+      fmt::format("GET {} HTTP/1.1\r\nHost: evil.example:{}\r\nConnection: close\r\n\r\n",
+                  inside("page"), server_->port());
   EXPECT_THAT(answer_to(rebound), StartsWith("HTTP/1.1 403"));
-  EXPECT_THAT(answer_to(fmt::format("GET {} HTTP/1.1\r\nConnection: close\r\n\r\n", inside("page"))),
-              StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(
+      answer_to(fmt::format("GET {} HTTP/1.1\r\nConnection: close\r\n\r\n", inside("page"))),
+      StartsWith("HTTP/1.1 403"));
   EXPECT_EQ(handled(), 0u);
   EXPECT_THAT(answer_to(get(inside("page"), fmt::format("Origin: http://{}\r\n", host()))),
               StartsWith("HTTP/1.1 200"));
@@ -206,10 +207,11 @@ TEST_F(ViewServer, UnpacksAndSplitsNothingOnAClientsWord) {
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 ")) << "the server must outlive this";
   expect_page();
   const std::string body = "not really packed";
-  answer_to(fmt::format("POST {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n"
-                        "Content-Encoding: gzip\r\nContent-Type: multipart/form-data; boundary=x\r\n"
-                        "Content-Length: {}\r\n\r\n{}",
-                        inside("page"), host(), body.size(), body));
+  answer_to(
+      fmt::format("POST {} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n"
+                  "Content-Encoding: gzip\r\nContent-Type: multipart/form-data; boundary=x\r\n"
+                  "Content-Length: {}\r\n\r\n{}",
+                  inside("page"), host(), body.size(), body));
   const std::lock_guard lock(mutex_);
   EXPECT_EQ(requests_.back().body, body);
 }

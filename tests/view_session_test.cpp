@@ -1,4 +1,5 @@
-// The live view without a browser: what is published agrees with a solve, and follows what is asked.
+// The live view without a browser: what is published agrees with a solve, and follows what is
+// asked.
 #include <chrono>
 #include <cstring>
 #include <thread>
@@ -19,9 +20,9 @@
 namespace halflight {
 namespace {
 
+using nlohmann::json;
 using ::testing::HasSubstr;
 using testing::QuadScene;
-using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 // A room of 3 m with a lamp below its ceiling and a box on its floor, each a node of its own.
@@ -31,8 +32,8 @@ Scene room() {
   const MaterialId lamp = quads.material(0.f, 10.f), spare = quads.material(0.f, 5.f);
   quads.scene.materials[lamp].name = "lamp";
   quads.scene.materials[spare].name = "spare";
-  quads.quad({1, 2.9f, 1}, {1, 0, 0}, {0, 0, 1}, lamp);       // node 6
-  quads.quad({0.2f, 2.9f, 0.2f}, {0.3f, 0, 0}, {0, 0, 0.3f}, spare);  // node 7
+  quads.quad({1, 2.9f, 1}, {1, 0, 0}, {0, 0, 1}, lamp);                        // node 6
+  quads.quad({0.2f, 2.9f, 0.2f}, {0.3f, 0, 0}, {0, 0, 0.3f}, spare);           // node 7
   quads.quad({1, 0.5f, 1}, {0, 0, 0.8f}, {0.8f, 0, 0}, quads.material(0.5f));  // node 8, a table
   return quads.scene;
 }
@@ -225,7 +226,8 @@ TEST(LiveView, FollowsALampThatMoves) {
   ASSERT_TRUE(live.done());
   const json before = live.probe_at({0.5f, 1.f, 0.5f}, {0, -1, 0}, true);
   live.command(R"({"node": 6, "offset": [-1, 0, -1]})");
-  ASSERT_TRUE(live.wait([](const json& s) { return s["iterations"].get<int>() == 0 || s["phase"] != "done"; }));
+  ASSERT_TRUE(live.wait(
+      [](const json& s) { return s["iterations"].get<int>() == 0 || s["phase"] != "done"; }));
   ASSERT_TRUE(live.done());
   const json after = live.probe_at({0.5f, 1.f, 0.5f}, {0, -1, 0}, true);
   Scene moved = room();
@@ -297,7 +299,8 @@ TEST(LiveView, RefinesWhatIsSeen) {
   live.command(
       R"({"important": {"position": [0.5, 1.5, 0.5], "forward": [1, -1, 1], "fov": 0.8,
           "width": 64, "height": 64}})");
-  ASSERT_TRUE(live.wait([](const json& s) { return s["important"] == true && s["phase"] != "done"; }));
+  ASSERT_TRUE(
+      live.wait([](const json& s) { return s["important"] == true && s["phase"] != "done"; }));
   ASSERT_TRUE(live.done());
   EXPECT_GT(live.status()["elements"].get<std::size_t>(), before);
 }

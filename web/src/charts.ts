@@ -2,6 +2,7 @@
 import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
 import type { Connection, Status } from './connection'
+import { short } from './probe'
 
 interface Record_ {
   threshold: number
@@ -12,7 +13,7 @@ interface Record_ {
   seconds: number
 }
 
-const kHeight = 130
+const kHeight = 120
 
 const colour = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim()
 
@@ -64,12 +65,13 @@ export class Charts {
     this.fetching = false
   }
 
-  private axes(): uPlot.Axis[] {
+  private axes(log: boolean): uPlot.Axis[] {
     const common = { stroke: colour('--text'), grid: { stroke: colour('--line'), width: 1 }, ticks: { stroke: colour('--line') } }
-    return [
-      { ...common, size: 30 },
-      { ...common, size: 52 },
-    ]
+    // Powers of ten alone get lines and labels.
+    const decades = (_: uPlot, splits: (number | null)[]) => splits.map((v) => (v && Number.isInteger(Math.round(1e9 * Math.log10(v)) / 1e9) ? v : null))
+    const labels = (_: uPlot, splits: (number | null)[]) => splits.map((v) => (v === null ? '' : short(v)))
+    const y: uPlot.Axis = { ...common, size: 60, values: labels }
+    return [{ ...common, size: 30 }, log ? { ...y, filter: decades, grid: { ...common.grid, filter: decades } as uPlot.Axis.Grid, ticks: { ...common.ticks, filter: decades } as uPlot.Axis.Ticks } : y]
   }
 
   private plot(title: string, series: uPlot.Series[], options: Partial<uPlot.Options> = {}): uPlot {
@@ -80,11 +82,11 @@ export class Charts {
     this.section.append(holder)
     const made = new uPlot(
       {
-        width: Math.max(200, this.section.clientWidth - 24),
+        width: Math.max(200, holder.clientWidth),
         height: kHeight,
         scales: { x: { time: false }, y: { distr: 3, log: 10 } },
-        axes: this.axes(),
-        legend: { show: series.length > 1 },
+        axes: this.axes(options.scales === undefined),
+        legend: { show: series.length > 1, live: false },
         cursor: { show: false },
         series: [{}, ...series],
         ...options,
@@ -104,7 +106,7 @@ export class Charts {
     const line = (label: string, name: string): uPlot.Series => ({ label, stroke: colour(name), width: 1.5, points: { show: true, size: 3 } })
     this.plot('Seconds of each iteration', [line('taken', '--accent'), line('predicted', '--second')])
     this.plot('Links and rays', [line('links', '--accent'), line('rays', '--second')])
-    this.plot('Error: threshold on links, W/m², and estimate', [
+    this.plot('Threshold on link errors, W/m², and estimated error', [
       line('threshold', '--accent'),
       { ...line('estimated error', '--second'), points: { show: true, size: 7 } },
     ])
@@ -155,7 +157,9 @@ export class Charts {
   }
 
   private resize(): void {
-    const width = Math.max(200, this.section.clientWidth - 24)
-    for (const plot of this.plots) if (plot.width !== width) plot.setSize({ width, height: kHeight })
+    for (const plot of this.plots) {
+      const width = Math.max(200, plot.root.parentElement?.clientWidth ?? 0)
+      if (plot.width !== width) plot.setSize({ width, height: kHeight })
+    }
   }
 }

@@ -63,7 +63,13 @@ export class Motion {
     const camera = this.stage.camera
     const size = this.stage.bounds.getSize(new THREE.Vector3()).length()
     const ahead = camera.getWorldDirection(new THREE.Vector3()).multiplyScalar(distance ?? 0.3 * size)
-    this.orbit.target.copy(camera.position).add(ahead)
+    const [position, turn] = [camera.position.clone(), camera.quaternion.clone()]
+    this.orbit.enableDamping = false
+    this.orbit.update() // whatever still swings
+    this.orbit.enableDamping = true
+    camera.position.copy(position)
+    camera.quaternion.copy(turn)
+    this.orbit.target.copy(position).add(ahead)
     this.orbit.update()
   }
 

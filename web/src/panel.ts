@@ -56,7 +56,7 @@ export function makePanel(container: HTMLElement, parts: Parts): Panel {
   solve.add(wishes, 'error', 0.5, 50, 0.5).name('error, %').onFinishChange((v: number) => actions.act({ error: v / 100 }))
   solve.add(wishes, 'visibility', ['exact', 'multires', 'average']).name('visibility').onChange((v: string) => actions.act({ visibility: v }))
   solve.add(wishes, 'seconds', 0, undefined, 0.5).name('time limit, s (0: none)').onFinishChange((v: number) => actions.act({ seconds: Math.max(0, v) }))
-  solve.add(wishes, 'links', 0, undefined, 1000).name('link limit (0: none)').onFinishChange((v: number) => actions.act({ links: Math.max(0, Math.round(v)) }))
+  solve.add(wishes, 'links', 0, undefined, 1).name('link limit (0: none)').onFinishChange((v: number) => actions.act({ links: Math.max(0, Math.round(v)) }))
 
   const lights = gui.addFolder('Lights')
   const factors: Record<string, number> = {}

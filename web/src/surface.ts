@@ -26,9 +26,10 @@ const vertexShader = `
 in uint light;
 in float value;
 uniform float lightScale;
-out vec3 vIrradiance;
-out float vValue;
-out vec2 vUv;
+// Interpolated inside triangles only: at outlines, values run on beyond them would be black.
+centroid out vec3 vIrradiance;
+centroid out float vValue;
+centroid out vec2 vUv;
 out vec3 vPosition;
 void main() {
   float scale = lightScale * exp2(float(light >> 27u) - 24.);
@@ -43,9 +44,9 @@ void main() {
 const fragmentShader = `
 #include <common>
 #include <tonemapping_pars_fragment>
-in vec3 vIrradiance;
-in float vValue;
-in vec2 vUv;
+centroid in vec3 vIrradiance;
+centroid in float vValue;
+centroid in vec2 vUv;
 in vec3 vPosition;
 uniform vec3 reflectance;
 uniform vec3 emission;

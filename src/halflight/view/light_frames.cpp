@@ -15,7 +15,8 @@ constexpr float kMostOff = 16.f;  // from the mean, before another scale is take
 float scale_for(std::span<const Rgb> irradiance, float before) {
   double sum = 0.0;
   for (const Rgb& e : irradiance) sum += static_cast<double>(average(e));
-  const auto mean = static_cast<float>(sum / static_cast<double>(std::max<std::size_t>(1, irradiance.size())));
+  const auto mean =
+      static_cast<float>(sum / static_cast<double>(std::max<std::size_t>(1, irradiance.size())));
   if (!(mean > 0.f) || !std::isfinite(mean)) return before > 0.f ? before : 1.f;
   if (before > 0.f && mean < kMostOff * before && mean * kMostOff > before) return before;
   return std::exp2(std::round(std::log2(mean)));

@@ -35,7 +35,6 @@ constexpr std::size_t kMostSharpened = 700'000;   // vertices of the first mesh
 // one that `solve -o` writes.
 constexpr std::size_t kSharpVertices = 300'000;
 constexpr float kSharpTolerance = 0.1f;
-constexpr int kSharpGatherRays = 64;
 constexpr std::size_t kMostGroupsApart = 8;
 constexpr double kQuietBeforeSharpening = 0.3;  // seconds without a change
 constexpr std::size_t kMostHistory = 4000;
@@ -554,9 +553,7 @@ void ViewSession::sharpen() {
   sharpening_ = std::thread([this, &state = *live_.state, &progress = *sharpening_progress_,
                              &result = *sharpened_result_] {
     const World& world = *state.world;
-    ReadOptions reading = kMeshReading;
-    reading.gather_rays = kSharpGatherRays;
-    const SolutionReader reader(state, reading);
+    const SolutionReader reader(state, kMeshReading);
     LitMeshOptions options;
     options.feature_size = state.options.feature_size;
     options.finest = finest_mesh_edge(state);
