@@ -29,10 +29,17 @@ struct LiveViewArguments {
   std::string token;
 };
 
+// Refers to the arguments.
 Result<ViewPlan> plan_of(const SolveArguments& arguments) {
   const Result<SolvePlan> plan = resolve(arguments);
   if (!plan) return tl::unexpected(plan.error());
-  ViewPlan result{plan->options};
+  ViewPlan result{.options = plan->options};
+  result.complete = [&arguments](SolveOptions& options, const World& world) -> Result<void> {
+    SolvePlan completed{options, {}};
+    if (auto ok = complete(completed, arguments, world); !ok) return ok;
+    options = completed.options;
+    return {};
+  };
   if (plan->goals.links) result.links = *plan->goals.links;
   if (!arguments.time.empty()) result.seconds = *parse_duration(arguments.time);
   return result;

@@ -14,6 +14,7 @@ interface Record_ {
 }
 
 const kHeight = 120
+const compact = (v: number) => (v >= 1e6 ? `${short(v / 1e6)}M` : v >= 1e3 ? `${short(v / 1e3)}k` : v > 0 && v < 1e-3 ? v.toExponential(0) : short(v))
 
 const colour = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim()
 
@@ -69,7 +70,7 @@ export class Charts {
     const common = { stroke: colour('--text'), grid: { stroke: colour('--line'), width: 1 }, ticks: { stroke: colour('--line') } }
     // Powers of ten alone get lines and labels.
     const decades = (_: uPlot, splits: (number | null)[]) => splits.map((v) => (v && Number.isInteger(Math.round(1e9 * Math.log10(v)) / 1e9) ? v : null))
-    const labels = (_: uPlot, splits: (number | null)[]) => splits.map((v) => (v === null ? '' : short(v)))
+    const labels = (_: uPlot, splits: (number | null)[]) => splits.map((v) => (v === null ? '' : compact(v)))
     const y: uPlot.Axis = { ...common, size: 60, values: labels }
     return [{ ...common, size: 30 }, log ? { ...y, filter: decades, grid: { ...common.grid, filter: decades } as uPlot.Axis.Grid, ticks: { ...common.ticks, filter: decades } as uPlot.Axis.Ticks } : y]
   }

@@ -67,6 +67,7 @@ export class Mover {
   place(offset: [number, number, number]): void {
     if (this.node === null) return
     const before = this.vector()
+    offset = offset.map((v) => Math.round(1e4 * v) / 1e4) as [number, number, number]
     ;[this.offset.x, this.offset.y, this.offset.z] = offset
     this.offsets.set(this.node, offset)
     this.frame.box.translate(this.vector().sub(before))

@@ -7,6 +7,9 @@ import type { View } from './connection'
 const kFrameMilliseconds = 33
 const kCoarsest = 0.5 // of the full resolution while the camera moves
 const kRestMilliseconds = 250
+const kLargeMesh = 500_000 // triangles: of larger meshes only the largest are drawn while they move
+const kFewestDrawn = 100_000
+const kSlowMilliseconds = 80 // a frame of a large mesh
 
 export class Stage {
   readonly scene = new THREE.Scene()
@@ -29,6 +32,8 @@ export class Stage {
   private lastMotion = 0
   private resolution = 1
   private applied = 0
+  private budget = Infinity // triangles
+  private drawnBudget = Infinity
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true })
@@ -49,17 +54,13 @@ export class Stage {
     const h = topology.header
     const geometry = new THREE.BufferGeometry()
     geometry.setAttribute('position', new THREE.BufferAttribute(topology.floats('positions'), 3))
-    geometry.setAttribute(
-      'uv',
-      new THREE.BufferAttribute(topology.has('uvs') ? topology.floats('uvs') : new Float32Array(2 * h.vertices), 2),
-    )
+    if (topology.has('uvs')) geometry.setAttribute('uv', new THREE.BufferAttribute(topology.floats('uvs'), 2))
     geometry.setIndex(new THREE.BufferAttribute(topology.words('indices'), 1))
     this.light = new THREE.BufferAttribute(new Uint32Array(h.vertices), 1)
     this.light.gpuType = THREE.IntType
     this.light.setUsage(THREE.DynamicDrawUsage)
-    this.value = new THREE.BufferAttribute(new Float32Array(h.vertices), 1)
+    this.value = null
     geometry.setAttribute('light', this.light)
-    geometry.setAttribute('value', this.value)
     const materials: THREE.Material[] = []
     h.draws.forEach((d: any, i: number) => {
       materials.push(surfaceMaterial(h.materials[d.material], d.emits, () => (onTexture(), this.draw())))
@@ -73,6 +74,8 @@ export class Stage {
     this.scene.add(this.mesh)
     this.header = h
     this.epoch = h.epoch
+    this.drawnBudget = Infinity
+    this.budget = h.triangles > kLargeMesh ? Math.min(this.budget, 2 * kFewestDrawn) : Infinity
     const sky = h.sky as number[]
     this.scene.background = Math.max(...sky) > 0 ? new THREE.Color(0x9fb4c8) : new THREE.Color(0x101214)
     const far = 20 * Math.max(1e-3, this.bounds.getSize(new THREE.Vector3()).length())
@@ -104,7 +107,11 @@ export class Stage {
   }
 
   setValues(values: Float32Array): void {
-    if (!this.value || values.length !== this.value.count) return
+    if (!this.mesh || values.length !== this.light?.count) return
+    if (!this.value) {
+      this.value = new THREE.BufferAttribute(new Float32Array(values.length), 1)
+      this.mesh.geometry.setAttribute('value', this.value)
+    }
     ;(this.value.array as Float32Array).set(values)
     this.value.needsUpdate = true
     this.draw()
@@ -197,6 +204,23 @@ export class Stage {
     this.renderer.setSize(this.canvas.clientWidth, this.canvas.clientHeight, false)
   }
 
+  // By how long the last frame of a movement took.
+  private adaptBudget(milliseconds: number): void {
+    const all = this.header?.triangles ?? 0
+    if (all <= kLargeMesh) return void (this.budget = Infinity)
+    const now = Math.min(all, this.budget)
+    if (milliseconds > kSlowMilliseconds) this.budget = Math.max(kFewestDrawn, 0.6 * now)
+    else if (milliseconds < 0.4 * kSlowMilliseconds) this.budget = Math.min(all, 1.1 * now)
+  }
+
+  // Triangles come by size, the largest of each material first.
+  private applyBudget(budget: number): void {
+    if (this.drawnBudget === budget || !this.mesh) return
+    this.drawnBudget = budget
+    const share = Math.min(1, budget / Math.max(1, this.header!.triangles))
+    this.mesh.geometry.groups.forEach((g, i) => (g.count = 3 * Math.ceil(share * this.header!.draws[i].count)))
+  }
+
   // While something moves, resolution is given up for pace; at rest the picture is whole again.
   private frame(time: number): void {
     requestAnimationFrame((next) => this.frame(next))
@@ -204,19 +228,22 @@ export class Stage {
     this.lastFrame = time
     const moving = this.beforeDraw(seconds)
     if (moving) {
-      if (time - this.lastMotion < 100) {
+      if (time - this.lastMotion < 1000) {
         const slow = 1000 * seconds > 1.2 * kFrameMilliseconds
         const fast = 1000 * seconds < 0.6 * kFrameMilliseconds
         if (slow) this.resolution = Math.max(kCoarsest, this.resolution * 0.8)
         else if (fast) this.resolution = Math.min(1, this.resolution * 1.05)
+        this.adaptBudget(time - this.lastMotion)
       }
       this.lastMotion = time
     }
     const atRest = time - this.lastMotion > kRestMilliseconds
     const resolution = atRest ? 1 : Math.round(this.resolution * 8) / 8
-    if (!this.wanted && !moving && this.applied === resolution) return
+    const budget = atRest ? Infinity : this.budget
+    if (!this.wanted && !moving && this.applied === resolution && this.drawnBudget === budget) return
     this.wanted = false
     this.applyResolution(resolution)
+    this.applyBudget(budget)
     this.renderer.render(this.scene, this.camera)
     ++this.frames
     this.frameTimes.push(time)

@@ -136,9 +136,6 @@ export function surfaceMaterial(material: any, emits: boolean, onLoad: () => voi
     },
     transparent: isClear,
     depthWrite: !isClear,
-    polygonOffset: true, // lines lie before the surfaces that they outline
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
   })
   if (material.texture) made.uniforms.map.value = loadTexture(material.texture, onLoad)
   if (emits && material.emissionTexture)

@@ -102,12 +102,15 @@ Scene edited(Scene scene, const std::map<NodeId, SceneEdit>& edits) {
   return scene;
 }
 
-void begin_live_scene(LiveScene& live, Scene scene) {
+void enter(LiveScene& live, Scene scene) {
   live.base = scene;
   live.world = make_world(std::move(scene));
   if (auto groups = find_light_groups(live.base)) live.groups = std::move(*groups);
   live.factors.assign(live.groups.size(), Rgb(1.f));
   live.first_view = choose_first_view(*live.world);
+}
+
+void begin(LiveScene& live) {
   const auto surfaces = std::make_shared<const Surfaces>(build_surfaces(live.world->geometry));
   make_live_state(
       live, surfaces,

@@ -33,8 +33,10 @@ struct LiveScene {
 // The scene with nodes moved in world space, or without what they show.
 Scene edited(Scene scene, const std::map<NodeId, SceneEdit>& edits);
 
-// A world and a state for the first time. The view is a camera of the scene, or one that shows it.
-void begin_live_scene(LiveScene& live, Scene scene);
+// A world for the first time, and a view: a camera of the scene, or one that shows it.
+void enter(LiveScene& live, Scene scene);
+// Its first state.
+void begin(LiveScene& live);
 // After edits: the world anew. Which sides can see light is taken over for what stood before;
 // everything of a node that was moved counts as seen.
 void follow_edits(LiveScene& live, const std::vector<NodeId>& moved);

@@ -18,6 +18,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostCells = 150'000;
+constexpr float kLineLift = 3e-4f;  // of the scene's diagonal: outlines lie before their surfaces
 constexpr std::size_t kMostClusters = 3000;
 constexpr std::size_t kMostPictured = 20'000;  // triangles, of all clusters whose BSIZE is measured
 constexpr int kMaskWidth = 320;
@@ -98,16 +99,17 @@ std::string elements_packet(const LiveSolution& live) {
   for (std::size_t i = 0; i < state.tree.size(); ++i)
     cells += state.tree[ElementId(i)].is_leaf_cell() ? 1 : 0;
   const std::size_t step = (cells + kMostCells - 1) / kMostCells;
+  const float lift = kLineLift * state.world->geometry.bounds.diagonal();
   std::vector<Vec3> lines;
   std::size_t number = 0;
   for (std::size_t i = 0; i < state.tree.size(); ++i) {
     const ElementId e(i);
     if (!state.tree[e].is_leaf_cell() || number++ % step != 0) continue;
-    const Vec3 n = state.tree.normal(e);
+    const Vec3 above = lift * state.tree.normal(e);
     state.tree.for_each_piece(e, [&](std::span<const Vec3> corners) {
       for (std::size_t k = 0; k < corners.size(); ++k) {
-        lines.push_back(state.world->rays.lift(corners[k], n));
-        lines.push_back(state.world->rays.lift(corners[(k + 1) % corners.size()], n));
+        lines.push_back(corners[k] + above);
+        lines.push_back(corners[(k + 1) % corners.size()] + above);
       }
     });
   }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <type_traits>
 
+#include "halflight/base/parallel.h"
 #include "halflight/view/packet.h"
 
 namespace halflight {
@@ -85,6 +87,30 @@ json camera_json(const PlacedCamera& c) {
           {"perspective", c.perspective},
           {"fov", c.vertical_fov},
           {"halfHeight", c.half_height}};
+}
+
+// Within a draw the largest triangles first: who cannot draw all in time leaves out the smallest.
+void order_by_size(ViewMesh& mesh) {
+  std::vector<float> areas(mesh.triangles.size());
+  parallel_for(areas.size(), 4096, [&](std::size_t i) {
+    const auto& t = mesh.triangles[i];
+    areas[i] = glm::length(glm::cross(mesh.positions[t[1]] - mesh.positions[t[0]],
+                                      mesh.positions[t[2]] - mesh.positions[t[0]]));
+  });
+  std::vector<std::uint32_t> order(areas.size());
+  std::iota(order.begin(), order.end(), 0u);
+  for (const ViewMesh::Draw& d : mesh.draws)
+    std::stable_sort(order.begin() + d.first, order.begin() + d.first + d.count,
+                     [&](std::uint32_t a, std::uint32_t b) { return areas[a] > areas[b]; });
+  const auto sorted = [&](const auto& items) {
+    std::remove_cvref_t<decltype(items)> result;
+    result.reserve(items.size());
+    for (const std::uint32_t i : order) result.push_back(items[i]);
+    return result;
+  };
+  mesh.triangles = sorted(mesh.triangles);
+  mesh.sources = sorted(mesh.sources);
+  mesh.back = sorted(mesh.back);
 }
 
 // Nodes that place something: what can be moved and switched.
@@ -205,6 +231,7 @@ ViewMesh make_view_mesh(const World& world, const LitMesh& lit) {
     }
     mesh.draws.back().count += static_cast<std::uint32_t>(p.triangles.size());
   }
+  order_by_size(mesh);
   return mesh;
 }
 

@@ -208,7 +208,7 @@ bool ViewSession::start() {
   }
   set_phase(Phase::building);
   live_.options = plan_.options;
-  begin_live_scene(live_, std::move(*scene));
+  enter(live_, std::move(*scene));
   const Geometry& g = live_.world->geometry;
   if (g.triangles.empty() || 3 * g.triangles.size() > 2 * kMostVertices) {
     const std::lock_guard lock(mutex_);

@@ -28,6 +28,8 @@ namespace halflight {
 
 struct ViewPlan {
   SolveOptions options;
+  // Adds what needs the scene, as views and rules by name; may be empty.
+  std::function<Result<void>(SolveOptions&, const World&)> complete;
   double seconds = std::numeric_limits<double>::infinity();  // of solving
   std::size_t links = 0;                                     // most; 0: no limit
 };
