@@ -24,5 +24,6 @@ find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tsl-robin-map REQUIRED)
 
-# Debian's zstd brings no CMake package: linked by its plain name, here and by a consumer.
+# Debian brings no CMake package for these: linked by their plain names, here and by a consumer.
 find_library(HALFLIGHT_ZSTD zstd REQUIRED)
+find_library(HALFLIGHT_HTTPLIB cpp-httplib REQUIRED)

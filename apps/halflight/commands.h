@@ -30,6 +30,7 @@ void add_sample(CLI::App& cli, int& status);
 void add_solve(CLI::App& cli, int& status);
 void add_scene(CLI::App& cli, int& status);
 void add_compare(CLI::App& cli, int& status);
+void add_view(CLI::App& cli, int& status);
 void add_reproduce(CLI::App& cli, int& status);
 
 }  // namespace halflight::app

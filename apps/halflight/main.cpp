@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   halflight::app::add_sample(cli, status);
   halflight::app::add_mix(cli, status);
   halflight::app::add_render(cli, status);
+  halflight::app::add_view(cli, status);
   halflight::app::add_inspect(cli, status);
   halflight::app::add_scene(cli, status);
   halflight::app::add_reference(cli, status);

@@ -138,23 +138,17 @@ std::vector<LitPrimitive> to_primitives(const WorkMesh& mesh, const Scene& scene
   return primitives;
 }
 
-}  // namespace
-
-LitMesh build_lit_mesh(const Scene& scene, const Geometry& g, const LightReader& read,
-                       const LitMeshOptions& given, const Progress& progress) {
-  LitMeshOptions options = given;
+LitMesh build_shown(const Scene& scene, const Geometry& g, WeldedPoints points,
+                    const SharedEdges& edges, const IdVector<TriangleId, ShownSides>& shown,
+                    const LightReader& read, LitMeshOptions options, const Progress& progress) {
   if (options.coarse <= 0.f) options.coarse = 4.f * options.feature_size;
   if (options.finest <= 0.f) options.finest = options.feature_size / 2.f;
-
   LitMesh result;
-  const LightReader counted = [&](std::span<const ReadingPoint> points) {
-    result.readings += points.size();
-    return read(points);
-  };
-  WeldedPoints points = weld(g);
-  const SharedEdges edges(g, points);
-  const auto shown = choose_shown_sides(scene, g, edges, options.feature_size, counted);
-  WorkMesh mesh = make_work_mesh(g, std::move(points), edges, shown, options.feature_size, counted);
+  WorkMesh mesh = make_work_mesh(g, std::move(points), edges, shown, options.feature_size,
+                                 [&](std::span<const ReadingPoint> places) {
+                                   result.readings += places.size();
+                                   return read(places);
+                                 });
   result.mean_irradiance = mean_irradiance(mesh, g);
   refine_mesh(mesh, shown, read, options, max_component(result.mean_irradiance), progress, result);
   fill_buried_sites(mesh);
@@ -164,6 +158,31 @@ LitMesh build_lit_mesh(const Scene& scene, const Geometry& g, const LightReader&
     result.triangles += p.triangles.size();
   }
   return result;
+}
+
+}  // namespace
+
+LitMesh build_lit_mesh(const Scene& scene, const Geometry& g, const LightReader& read,
+                       const LitMeshOptions& options, const Progress& progress) {
+  std::size_t readings = 0;
+  WeldedPoints points = weld(g);
+  const SharedEdges edges(g, points);
+  const auto shown = choose_shown_sides(scene, g, edges, options.feature_size,
+                                        [&](std::span<const ReadingPoint> places) {
+                                          readings += places.size();
+                                          return read(places);
+                                        });
+  LitMesh mesh = build_shown(scene, g, std::move(points), edges, shown, read, options, progress);
+  mesh.readings += readings;
+  return mesh;
+}
+
+LitMesh build_lit_mesh(const Scene& scene, const Geometry& g,
+                       const IdVector<TriangleId, ShownSides>& shown, const LightReader& read,
+                       const LitMeshOptions& options, const Progress& progress) {
+  WeldedPoints points = weld(g);
+  const SharedEdges edges(g, points);
+  return build_shown(scene, g, std::move(points), edges, shown, read, options, progress);
 }
 
 }  // namespace halflight

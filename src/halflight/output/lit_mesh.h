@@ -9,6 +9,7 @@
 #include "halflight/base/progress.h"
 #include "halflight/io/write_gltf.h"
 #include "halflight/output/light_reader.h"
+#include "halflight/output/shown_sides.h"
 
 namespace halflight {
 
@@ -35,6 +36,11 @@ struct LitMesh {
 
 // Deterministic. `read` is called with large batches, from one thread. Cancelling ends subdivision.
 LitMesh build_lit_mesh(const Scene& scene, const Geometry& geometry, const LightReader& read,
+                       const LitMeshOptions& options, const Progress& progress = {});
+
+// The same where it is known which sides are to be shown.
+LitMesh build_lit_mesh(const Scene& scene, const Geometry& geometry,
+                       const IdVector<TriangleId, ShownSides>& shown, const LightReader& read,
                        const LitMeshOptions& options, const Progress& progress = {});
 
 }  // namespace halflight

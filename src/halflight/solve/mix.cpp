@@ -82,6 +82,20 @@ void relight(SolverState& state, std::span<const Rgb> factors) {
     state.emitters = std::make_shared<EmitterTree>(*state.visibility, find_emitters(*state.world));
 }
 
+void shine(SolverState& state, std::span<const Rgb> factors) {
+  relight(state, factors);
+  parallel_for(state.tree.size(), kGrain, [&](std::size_t i) {
+    if (!state.tree[ElementId(i)].is_cluster()) evaluate_material(state, ElementId(i));
+  });
+  GroupLight light = light_of_one(state);
+  state.given_light = std::move(light.given_light);
+  state.irradiance = std::move(light.irradiance);
+  pull(state);
+  state.grouped.factors.assign(factors.begin(), factors.end());
+  state.grouped.light.clear();
+  state.grouped.exitance.clear();
+}
+
 void separate(SolverState& state, const Progress& progress) {
   GroupedLight& grouped = state.grouped;
   const std::size_t n = state.tree.size(), count = grouped.groups.size();

@@ -25,6 +25,11 @@ void separate(SolverState& state, const Progress& progress);
 // radiosity, in place. The world stays as it was.
 void mix(SolverState& state, std::span<const Rgb> factors);
 
+// The same for a state that is not separated, by finding the light of all groups together anew over
+// the cells and links that there are; the world follows. Cells and links keep the shape that the
+// light so far has given them.
+void shine(SolverState& state, std::span<const Rgb> factors);
+
 // Puts the state into a world that shines by these factors: what reads direct light afresh, as
 // readers of the solution do, needs this beside `mix`.
 void relight(SolverState& state, std::span<const Rgb> factors);

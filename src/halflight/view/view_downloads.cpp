@@ -1,0 +1,92 @@
+#include "halflight/view/view_downloads.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include <unistd.h>
+
+#include "halflight/io/image_write.h"
+#include "halflight/io/write_gltf.h"
+#include "halflight/output/exposure.h"
+#include "halflight/output/read_light.h"
+#include "halflight/output/solution_image.h"
+
+namespace halflight {
+namespace {
+
+constexpr int kSamplesPerPixel = 4;
+
+// A folder of its own that nobody else may look into, gone with the object.
+class PrivateFolder {
+ public:
+  PrivateFolder() {
+    std::error_code ignored;
+    std::string pattern =
+        (std::filesystem::temp_directory_path(ignored) / "halflight-XXXXXX").string();
+    if (::mkdtemp(pattern.data())) path_ = pattern;
+  }
+  ~PrivateFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// The bytes that `write` puts into a file of this name.
+template <class Write>
+Result<std::string> bytes_of(const char* name, const Write& write) {
+  const PrivateFolder folder;
+  if (folder.path().empty())
+    return system_error("no temporary folder can be made", "live view", "free some disk space");
+  const std::filesystem::path file = folder.path() / name;
+  if (Result<void> written = write(file); !written) return tl::unexpected(written.error());
+  std::ifstream in(file, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+LitMesh sharp_mesh(const SolverState& state) {
+  const SolutionReader reader(state, kMeshReading);
+  LitMeshOptions options;
+  options.feature_size = state.options.feature_size;
+  options.finest = finest_mesh_edge(state);
+  return build_lit_mesh(
+      state.world->scene, state.world->geometry,
+      [&](std::span<const ReadingPoint> points) { return reader(points); }, options);
+}
+
+}  // namespace
+
+Result<std::string> lit_glb(LiveSolution& live) {
+  const SolverState& state = *live.scene.state;
+  const World& world = *state.world;
+  std::optional<LitMesh> made;
+  if (!live.sharp) made = sharp_mesh(state);
+  const LitMesh& mesh = live.sharp ? *live.sharp : *made;
+  const float exposure = automatic_exposure(world.scene, world.geometry, mesh.primitives);
+  return bytes_of("lit.glb", [&](const std::filesystem::path& file) {
+    return write_lit_glb(file, world.scene, world.geometry, mesh.primitives, exposure);
+  });
+}
+
+Result<std::string> hdr_picture(LiveSolution& live, const ViewOfInterest& view) {
+  const SolverState& state = *live.scene.state;
+  std::optional<LitMesh> made;
+  if (!live.sharp) made = sharp_mesh(state);
+  const int width = std::min(view.width, kLargestPicture);
+  const int height = std::min(view.height, kLargestPicture);
+  const Image image = solution_image(
+      state, SolutionReader(state, kPixelReading), live.sharp ? *live.sharp : *made,
+      CameraRays(view.camera, width, height), width, height, kSamplesPerPixel, Progress());
+  return bytes_of("view.exr",
+                  [&](const std::filesystem::path& file) { return write_image(file, image); });
+}
+
+}  // namespace halflight

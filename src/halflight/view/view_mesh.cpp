@@ -1,0 +1,279 @@
+#include "halflight/view/view_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <type_traits>
+
+#include "halflight/base/parallel.h"
+#include "halflight/view/packet.h"
+
+namespace halflight {
+namespace {
+
+using nlohmann::json;
+
+constexpr float kEdgePerFeature = 2.f;  // length of edges in feature sizes
+constexpr std::size_t kMostNodes = 20'000;
+// Of the mean irradiance: backs that light only reaches through a gap are not worth vertices.
+constexpr float kUnlit = 5e-3f;
+
+json rgb(const Rgb& c) { return {c.r, c.g, c.b}; }
+
+IdVector<TriangleId, ShownSides> live_sides_of(const SolverState& state) {
+  const Scene& scene = state.world->scene;
+  const Geometry& g = state.world->geometry;
+  IdVector<TriangleId, ShownSides> shown(g.triangles.size());
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const TriangleId t(i);
+    const SurfaceId s = state.surfaces->of_triangle[t];
+    const bool emits = scene.materials[g.materials[t]].emits();
+    shown[t].front = emits || state.tree.side_root(side_of(s, false)).valid();
+    shown[t].back = state.tree.side_root(side_of(s, true)).valid();
+  }
+  return shown;
+}
+
+// Mean irradiance of every side's cells, brightest channel.
+IdVector<SideId, float> light_of_sides(const SolverState& state) {
+  IdVector<SideId, float> light(2 * state.surfaces->surfaces.size(), 0.f);
+  for (std::size_t i = 0; i < state.tree.size(); ++i) {
+    const Element& e = state.tree[ElementId(i)];
+    if (e.is_leaf_cell()) light[e.side] += e.area * max_component(state.irradiance[ElementId(i)]);
+  }
+  for (std::size_t i = 0; i < light.size(); ++i)
+    light[SideId(i)] /= std::max((*state.surfaces)[SideId(i)].area, 1e-30f);
+  return light;
+}
+
+const TextureRef& shown_texture(const Material& m) {
+  return m.reflectance_texture.valid() ? m.reflectance_texture : m.emission_texture;
+}
+
+Vec2 transformed(const TextureRef& t, Vec2 uv) {
+  const auto& m = t.uv_transform;
+  return {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
+}
+
+json texture_json(const Scene& scene, const TextureRef& t) {
+  if (!t.valid()) return nullptr;
+  const auto name = [](Wrap w) {
+    return w == Wrap::repeat ? "repeat" : w == Wrap::mirror ? "mirror" : "clamp";
+  };
+  const Texture& texture = scene.textures[t.texture];
+  return {
+      {"id", t.texture.value}, {"wrapU", name(texture.wrap_u)}, {"wrapV", name(texture.wrap_v)}};
+}
+
+json material_json(const Scene& scene, const Material& m) {
+  const auto mode = m.alpha_mode == AlphaMode::mask    ? "mask"
+                    : m.alpha_mode == AlphaMode::blend ? "blend"
+                                                       : "opaque";
+  return {{"name", m.name},
+          {"reflectance", rgb(m.reflectance)},
+          {"texture", texture_json(scene, m.reflectance_texture)},
+          {"emission", rgb(m.emission)},
+          {"emissionTexture", texture_json(scene, m.emission_texture)},
+          {"alphaMode", mode},
+          {"alpha", m.alpha * (1.f - m.transmission)},
+          {"alphaCutoff", m.alpha_cutoff}};
+}
+
+json camera_json(const PlacedCamera& c) {
+  return {{"name", c.name},
+          {"position", rgb(c.position)},
+          {"forward", rgb(c.forward)},
+          {"up", rgb(c.up)},
+          {"perspective", c.perspective},
+          {"fov", c.vertical_fov},
+          {"halfHeight", c.half_height}};
+}
+
+// Within a draw the largest triangles first: who cannot draw all in time leaves out the smallest.
+void order_by_size(ViewMesh& mesh) {
+  std::vector<float> areas(mesh.triangles.size());
+  parallel_for(areas.size(), 4096, [&](std::size_t i) {
+    const auto& t = mesh.triangles[i];
+    areas[i] = glm::length(glm::cross(mesh.positions[t[1]] - mesh.positions[t[0]],
+                                      mesh.positions[t[2]] - mesh.positions[t[0]]));
+  });
+  std::vector<std::uint32_t> order(areas.size());
+  std::iota(order.begin(), order.end(), 0u);
+  for (const ViewMesh::Draw& d : mesh.draws)
+    std::stable_sort(order.begin() + d.first, order.begin() + d.first + d.count,
+                     [&](std::uint32_t a, std::uint32_t b) { return areas[a] > areas[b]; });
+  const auto sorted = [&](const auto& items) {
+    std::remove_cvref_t<decltype(items)> result;
+    result.reserve(items.size());
+    for (const std::uint32_t i : order) result.push_back(items[i]);
+    return result;
+  };
+  mesh.triangles = sorted(mesh.triangles);
+  mesh.sources = sorted(mesh.sources);
+  mesh.back = sorted(mesh.back);
+}
+
+// Nodes that place something: what can be moved and switched.
+json nodes_json(const World& world) {
+  IdVector<NodeId, Bounds3f> boxes(world.scene.nodes.size());
+  const Geometry& g = world.geometry;
+  for (const PrimitiveInstance& p : g.primitive_instances)
+    for (const VertexId v : p.vertices) boxes[p.node].extend(g.positions[v]);
+  json nodes = json::array();
+  for (std::size_t i = 0; i < boxes.size() && nodes.size() < kMostNodes; ++i) {
+    const Node& node = world.scene.nodes[NodeId(i)];
+    const Bounds3f& box = boxes[NodeId(i)];
+    if (box.empty() && !node.light.valid()) continue;
+    json item{{"id", i}, {"name", node.name}, {"light", node.light.valid()}};
+    if (!box.empty()) item["box"] = {rgb(box.lower), rgb(box.upper)};
+    nodes.push_back(std::move(item));
+  }
+  return nodes;
+}
+
+}  // namespace
+
+IdVector<TriangleId, ShownSides> sides_worth_showing(const SolverState& state) {
+  const Scene& scene = state.world->scene;
+  const Geometry& g = state.world->geometry;
+  const IdVector<SideId, float> light = light_of_sides(state);
+  const float unlit = kUnlit * mean_irradiance(state);
+  IdVector<TriangleId, ShownSides> shown(g.triangles.size());
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const TriangleId t(i);
+    const SurfaceId s = state.surfaces->of_triangle[t];
+    const Material& m = scene.materials[g.materials[t]];
+    shown[t].back = light[side_of(s, true)] > unlit || (m.emits() && m.double_sided);
+    shown[t].front = light[side_of(s, false)] > unlit || m.emits() || !shown[t].back;
+  }
+  return shown;
+}
+
+LitMesh cut_evenly(const SolverState& state, std::size_t most_vertices) {
+  const Geometry& g = state.world->geometry;
+  const auto shown = live_sides_of(state);
+  double area = 0.0;
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    area += static_cast<double>(g.area(TriangleId(i))) *
+            ((shown[TriangleId(i)].front ? 1 : 0) + (shown[TriangleId(i)].back ? 1 : 0));
+  // Triangles of edge l have about area / l^2 vertices.
+  const auto fewest =
+      static_cast<float>(std::sqrt(area / std::max(1.0, 0.5 * static_cast<double>(most_vertices))));
+  LitMeshOptions options;
+  options.feature_size = std::max(state.options.feature_size, 1e-4f * g.bounds.diagonal());
+  options.coarse = std::max(kEdgePerFeature * options.feature_size, fewest);
+  options.finest = options.coarse;
+  options.max_vertices = 2 * most_vertices;
+  const LightReader evenly = [](std::span<const ReadingPoint> points) {
+    return std::vector<Reading>(points.size(), Reading{Rgb(1.f), Rgb(0.f)});
+  };
+  return build_lit_mesh(state.world->scene, g, shown, evenly, options);
+}
+
+void translate(LitMesh& mesh, const World& world, NodeId node, const Vec3& offset) {
+  const auto& nodes = world.scene.nodes;
+  for (LitPrimitive& p : mesh.primitives) {
+    NodeId at = world.geometry.primitive_instances[p.instance].node;
+    while (at.valid() && at != node) at = nodes[at].parent;
+    if (!at.valid()) continue;
+    for (Vec3& x : p.positions) x += offset;
+  }
+}
+
+ViewMesh make_view_mesh(const World& world, const LitMesh& lit) {
+  const Scene& scene = world.scene;
+  const Geometry& g = world.geometry;
+  ViewMesh mesh;
+  struct Part {
+    MaterialId material;
+    bool emits;
+    std::uint32_t primitive, first_vertex;
+  };
+  std::vector<Part> parts;
+  bool textured = false;
+  mesh.positions.reserve(lit.vertices);
+  for (std::size_t i = 0; i < lit.primitives.size(); ++i) {
+    const LitPrimitive& p = lit.primitives[i];
+    const PrimitiveInstance& what = g.primitive_instances[p.instance];
+    const MaterialId id = scene.meshes[what.mesh].primitives[what.primitive].material;
+    const Material& m = scene.materials[id];
+    parts.push_back({id, m.emits() && (!p.back || m.double_sided), static_cast<std::uint32_t>(i),
+                     static_cast<std::uint32_t>(mesh.positions.size())});
+    mesh.positions.insert(mesh.positions.end(), p.positions.begin(), p.positions.end());
+    textured |= shown_texture(m).valid();
+  }
+  if (textured) {
+    mesh.uvs.assign(mesh.positions.size(), Vec2(0.f));
+    for (const Part& part : parts) {
+      const TextureRef& texture = shown_texture(scene.materials[part.material]);
+      if (!texture.valid()) continue;
+      const auto set = static_cast<std::size_t>(std::clamp(texture.uv_set, 0, 1));
+      const std::vector<Vec2>& uvs = lit.primitives[part.primitive].uvs[set];
+      for (std::size_t k = 0; k < uvs.size(); ++k)
+        mesh.uvs[part.first_vertex + k] = transformed(texture, uvs[k]);
+    }
+  }
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+    return std::pair(a.material, a.emits) < std::pair(b.material, b.emits);
+  });
+  for (const Part& part : parts) {
+    const LitPrimitive& p = lit.primitives[part.primitive];
+    const auto first = static_cast<std::uint32_t>(mesh.triangles.size());
+    if (mesh.draws.empty() || mesh.draws.back().material != part.material ||
+        mesh.draws.back().emits != part.emits)
+      mesh.draws.push_back({part.material, part.emits, first, 0});
+    for (std::size_t k = 0; k < p.triangles.size(); ++k) {
+      const auto& t = p.triangles[k];
+      mesh.triangles.push_back(
+          {part.first_vertex + t[0], part.first_vertex + t[1], part.first_vertex + t[2]});
+      mesh.sources.push_back(p.sources[k]);
+      mesh.back.push_back(p.back ? 1 : 0);
+    }
+    mesh.draws.back().count += static_cast<std::uint32_t>(p.triangles.size());
+  }
+  order_by_size(mesh);
+  return mesh;
+}
+
+std::vector<Rgb> vertex_light(const LitMesh& mesh) {
+  std::vector<Rgb> light;
+  light.reserve(mesh.vertices);
+  for (const LitPrimitive& p : mesh.primitives)
+    light.insert(light.end(), p.irradiance.begin(), p.irradiance.end());
+  return light;
+}
+
+std::string topology_packet(const ViewMesh& mesh, const World& world, const PlacedCamera& first,
+                            float feature_size) {
+  const Scene& scene = world.scene;
+  Packet packet;
+  json& h = packet.header;
+  h["epoch"] = mesh.epoch;
+  h["sharp"] = mesh.sharp;
+  h["vertices"] = mesh.positions.size();
+  h["triangles"] = mesh.triangles.size();
+  h["sceneTriangles"] = world.geometry.triangles.size();
+  h["featureSize"] = feature_size;
+  const Bounds3f& bounds = world.geometry.bounds;
+  h["bounds"] = {rgb(bounds.empty() ? Vec3(0.f) : bounds.lower),
+                 rgb(bounds.empty() ? Vec3(0.f) : bounds.upper)};
+  h["sky"] = rgb(scene.sky);
+  h["draws"] = json::array();
+  for (const ViewMesh::Draw& d : mesh.draws)
+    h["draws"].push_back({{"material", d.material.value},
+                          {"emits", d.emits},
+                          {"first", d.first},
+                          {"count", d.count}});
+  h["materials"] = json::array();
+  for (const Material& m : scene.materials) h["materials"].push_back(material_json(scene, m));
+  h["nodes"] = nodes_json(world);
+  h["cameras"] = json::array();
+  for (const PlacedCamera& c : world.geometry.cameras) h["cameras"].push_back(camera_json(c));
+  h["firstView"] = camera_json(first);
+  packet.add<Vec3>("positions", "f32", mesh.positions);
+  packet.add<std::array<std::uint32_t, 3>>("indices", "u32", mesh.triangles);
+  if (!mesh.uvs.empty()) packet.add<Vec2>("uvs", "f32", mesh.uvs);
+  return packet.bytes();
+}
+
+}  // namespace halflight

@@ -1,0 +1,386 @@
+// The live view without a browser: what is published agrees with a solve, and follows what is
+// asked.
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "halflight/scene/procedural/catalogue.h"
+#include "halflight/view/packet.h"
+#include "halflight/view/shared_exponent.h"
+#include "halflight/view/view_layers.h"
+#include "halflight/view/view_queries.h"
+#include "halflight/view/view_session.h"
+#include "quad_scene.h"
+#include "solved_scene.h"
+
+namespace halflight {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using testing::QuadScene;
+using Clock = std::chrono::steady_clock;
+
+// A room of 3 m with a lamp below its ceiling and a box on its floor, each a node of its own.
+Scene room() {
+  QuadScene quads;
+  quads.box({0, 0, 0}, {3, 3, 3}, quads.material(0.5f), true);
+  const MaterialId lamp = quads.material(0.f, 10.f), spare = quads.material(0.f, 5.f);
+  quads.scene.materials[lamp].name = "lamp";
+  quads.scene.materials[spare].name = "spare";
+  quads.quad({1, 2.9f, 1}, {1, 0, 0}, {0, 0, 1}, lamp);                        // node 6
+  quads.quad({0.2f, 2.9f, 0.2f}, {0.3f, 0, 0}, {0, 0, 0.3f}, spare);           // node 7
+  quads.quad({1, 0.5f, 1}, {0, 0, 0.8f}, {0.8f, 0, 0}, quads.material(0.5f));  // node 8, a table
+  return quads.scene;
+}
+
+json json_of(const std::string& packet) {
+  std::uint32_t length = 0;
+  std::memcpy(&length, packet.data() + 4, 4);
+  return json::parse(packet.substr(8, length));
+}
+
+template <class T>
+std::vector<T> array_of(const std::string& packet, const char* name) {
+  std::uint32_t length = 0;
+  std::memcpy(&length, packet.data() + 4, 4);
+  const json place = json_of(packet)["arrays"][name];
+  std::vector<T> values(place["count"].get<std::size_t>());
+  std::memcpy(values.data(), packet.data() + 8 + length + place["offset"].get<std::size_t>(),
+              4 * values.size());
+  return values;
+}
+
+struct Live {
+  explicit Live(Scene scene = room(), float feature_size = 0.3f)
+      : session([scene] { return scene; }, plan(feature_size)) {}
+
+  static ViewPlan plan(float feature_size) {
+    ViewPlan plan;
+    plan.options.feature_size = feature_size;
+    return plan;
+  }
+  json status() const { return json::parse(session.status()); }
+  template <class Condition>
+  bool wait(const Condition& condition, double seconds = 60.0) const {
+    const auto start = Clock::now();
+    while (!condition(status())) {
+      if (std::chrono::duration<double>(Clock::now() - start).count() > seconds) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return true;
+  }
+  bool done() const {
+    return wait([](const json& s) { return s["phase"] == "done"; });
+  }
+  void command(const std::string& text) {
+    ASSERT_TRUE(wait([](const json& s) { return s["version"].get<int>() > 0; }));
+    const auto parsed = parse_view_command(text);
+    ASSERT_TRUE(parsed) << parsed.error().line();
+    const auto sent = session.command(*parsed);
+    ASSERT_TRUE(sent) << sent.error().line();
+  }
+  json probe_at(const Vec3& origin, const Vec3& direction, bool exact) {
+    const auto answer = session.ask(
+        [=](LiveSolution& live) -> Result<std::string> {
+          return probe(live, {origin, direction, exact});
+        },
+        20.0);
+    return answer ? json::parse(*answer) : json();
+  }
+  double mean() const { return status()["meanIrradiance"]; }
+
+  ViewSession session;
+};
+
+TEST(SharedExponent, KeepsColoursToAFifthOfAPercent) {
+  for (const float scale : {1e-3f, 0.7f, 1.f, 255.9f, 511.6f, 6e4f}) {
+    const Rgb c = scale * Rgb(1.f, 0.37f, 0.02f);
+    const Rgb back = unpack_rgb9e5(pack_rgb9e5(c));
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(back[k], c[k], 0.002f * scale) << scale;
+  }
+  EXPECT_EQ(pack_rgb9e5(Rgb(0.f)), 0u);
+  EXPECT_EQ(unpack_rgb9e5(pack_rgb9e5(Rgb(1e9f))), Rgb(65408.f));
+}
+
+TEST(LightFrames, TellWhatChangedSinceAVersion) {
+  LightFrames frames;
+  EXPECT_TRUE(frames.since(1, 0).empty());
+  frames.begin(1);
+  std::vector<Rgb> light(2000, Rgb(1.f));
+  const std::uint64_t first = frames.add(1, light, 1.f);
+  EXPECT_EQ(array_of<std::uint32_t>(frames.since(1, 0), "light").size(), 2000u);
+  light[700] = Rgb(2.f);
+  const std::uint64_t second = frames.add(1, light, 1.f);
+  EXPECT_GT(second, first);
+  const std::string change = frames.since(1, first);
+  const auto ranges = array_of<std::uint32_t>(change, "ranges");
+  ASSERT_EQ(ranges.size(), 2u);
+  EXPECT_LE(ranges[0], 700u);
+  EXPECT_GT(ranges[0] + ranges[1], 700u);
+  EXPECT_LT(ranges[1], 1000u);
+  EXPECT_EQ(array_of<std::uint32_t>(frames.since(1, second), "light").size(), 0u);
+  EXPECT_EQ(array_of<std::uint32_t>(frames.since(7, second), "light").size(), 2000u)
+      << "who has another mesh gets everything";
+}
+
+TEST(LightFrames, KeepFaintAndGlaringLight) {
+  for (const float level : {1e-9f, 1.f, 1e9f}) {
+    LightFrames frames;
+    frames.begin(1);
+    const std::vector<Rgb> light(100, level * Rgb(1.f, 0.5f, 0.1f));
+    frames.add(1, light, 1.f);
+    const std::string packet = frames.since(1, 0);
+    const Rgb back = json_of(packet)["scale"].get<float>() *
+                     unpack_rgb9e5(array_of<std::uint32_t>(packet, "light").front());
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(back[k] / level, light[0][k] / level, 0.002f);
+  }
+}
+
+TEST(ViewCommandText, IsCheckedBeforeAnybodyActs) {
+  for (const char* bad :
+       {"", "[]", "{", R"({"featureSize": -1})", R"({"featureSize": "x"})", R"({"error": 0})",
+        R"({"visibility": "none"})", R"({"offset": [1, 2]})", R"({"offset": [1, 2, 3]})",
+        R"({"groups": {"a": -1}})", R"({"groups": {"a": 1e30}})", R"({"paused": 1})",
+        R"({"what": 1})", R"({"important": {"forward": [0, 1, 0], "up": [0, 1, 0]}})",
+        R"({"important": 3})", R"({"seconds": 1e300})", R"({"node": -2, "shown": true})"})
+    EXPECT_FALSE(parse_view_command(bad)) << bad;
+  EXPECT_FALSE(parse_view_command(std::string(60'000, '[')));
+  const auto good = parse_view_command(
+      R"({"paused": true, "groups": {"lamp": 0.5}, "node": 3, "offset": [0, 1, 0]})");
+  ASSERT_TRUE(good);
+  EXPECT_EQ(good->groups.front().second, Rgb(0.5f));
+  EXPECT_EQ(good->offset, Vec3(0.f, 1.f, 0.f));
+}
+
+TEST(LiveView, EndsWithTheLightThatASolveFinds) {
+  Live live;
+  ASSERT_TRUE(live.done());
+  const SolverState solved = testing::solve(room(), live.plan(0.3f).options);
+  EXPECT_NEAR(live.mean(), mean_irradiance(solved), 0.02f * mean_irradiance(solved));
+
+  // The probe reads as a sensor does, and the vertices of the sharp mesh agree with it.
+  const json seen = live.probe_at({0.5f, 1.5f, 2.5f}, {0, -1, 0}, true);
+  const std::vector<ReadingPoint> place{{{0.5f, 0.f, 2.5f}, {0, 1, 0}, {}}};
+  const float expected = testing::read_irradiance(solved, place).front();
+  EXPECT_NEAR(seen["irradiance"][0].get<float>(), expected, 0.03f * expected);
+
+  const auto topology = live.session.topology();
+  EXPECT_TRUE(json_of(*topology)["sharp"].get<bool>());
+  const auto positions = array_of<float>(*topology, "positions");
+  const std::string light = live.session.frames().since(0, 0);
+  const auto packed = array_of<std::uint32_t>(light, "light");
+  const float scale = json_of(light)["scale"];
+  ASSERT_EQ(3 * packed.size(), positions.size());
+  float nearest = kInfinity, there = 0.f;
+  for (std::size_t v = 0; v < packed.size(); ++v) {
+    const Vec3 p(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]);
+    const float distance = glm::distance(p, Vec3(0.5f, 0.f, 2.5f));
+    if (distance < nearest) nearest = distance, there = unpack_rgb9e5(packed[v]).r * scale;
+  }
+  EXPECT_LT(nearest, 0.5f);
+  EXPECT_NEAR(there, expected, 0.15f * expected);
+}
+
+TEST(LiveView, SharpensThePictureVersionByVersion) {
+  Live live(room(), 0.1f);
+  ASSERT_TRUE(live.done());
+  const json s = live.status();
+  EXPECT_GT(s["version"].get<int>(), 2);
+  EXPECT_EQ(s["epoch"], 2);
+  EXPECT_LT(s["error"]["estimated"].get<float>(), 0.1f);
+  EXPECT_LT(s["firstLightSeconds"].get<double>(), s["wallSeconds"].get<double>());
+}
+
+TEST(LiveView, DimsALampAsPhysicsSays) {
+  Live live;
+  ASSERT_TRUE(live.done());
+  const double both = live.mean();
+  live.command(R"({"groups": {"spare": 0}})");
+  ASSERT_TRUE(live.wait([&](const json& s) { return s["meanIrradiance"] < 0.995 * both; }));
+  const double one = live.mean();
+  live.command(R"({"groups": {"lamp": 0, "spare": 1}})");
+  ASSERT_TRUE(live.wait([&](const json& s) { return s["meanIrradiance"] < 0.5 * both; }));
+  const double other = live.mean();
+  EXPECT_NEAR(one + other, both, 0.01 * both) << "light adds up";
+  // Power is radiance times area: 10 x 1 m2 against 5 x 0.09 m2.
+  EXPECT_NEAR(other / one, 0.045, 0.015);
+}
+
+TEST(LiveView, DimsALampBeforeItIsDone) {
+  Live live(room(), 0.03f);
+  live.command(R"({"paused": true})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["phase"] == "paused"; }));
+  const double before = live.mean();
+  live.command(R"({"groups": {"lamp": 0.5, "spare": 0.5}})");
+  ASSERT_TRUE(live.wait([&](const json& s) { return s["meanIrradiance"] < 0.9 * before; }));
+  EXPECT_NEAR(live.mean(), 0.5 * before, 0.1 * before);
+}
+
+TEST(LiveView, FollowsALampThatMoves) {
+  Live live;
+  ASSERT_TRUE(live.done());
+  const json before = live.probe_at({0.5f, 1.f, 0.5f}, {0, -1, 0}, true);
+  live.command(R"({"node": 6, "offset": [-1, 0, -1]})");
+  ASSERT_TRUE(live.wait(
+      [](const json& s) { return s["iterations"].get<int>() == 0 || s["phase"] != "done"; }));
+  ASSERT_TRUE(live.done());
+  const json after = live.probe_at({0.5f, 1.f, 0.5f}, {0, -1, 0}, true);
+  Scene moved = room();
+  moved.nodes[NodeId(std::size_t{6})].local[3] = glm::dvec4(-1, 0, -1, 1);
+  const SolverState solved = testing::solve(std::move(moved), live.plan(0.3f).options);
+  const float expected =
+      testing::read_irradiance(solved, {{{0.5f, 0.f, 0.5f}, {0, 1, 0}, {}}}).front();
+  EXPECT_NEAR(after["irradiance"][0].get<float>(), expected, 0.03f * expected);
+  EXPECT_GT(after["irradiance"][0].get<float>(), 1.1f * before["irradiance"][0].get<float>());
+  // And back again.
+  live.command(R"({"node": 6, "offset": [0, 0, 0]})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["phase"] != "done"; }));
+  ASSERT_TRUE(live.done());
+  const json back = live.probe_at({0.5f, 1.f, 0.5f}, {0, -1, 0}, true);
+  EXPECT_NEAR(back["irradiance"][0].get<float>(), before["irradiance"][0].get<float>(),
+              0.02f * before["irradiance"][0].get<float>());
+}
+
+TEST(LiveView, TakesAnObjectAwayAndPutsItBack) {
+  Live live;
+  ASSERT_TRUE(live.done());
+  EXPECT_EQ(live.probe_at({1.4f, 1.f, 1.4f}, {0, -1, 0}, false)["node"], 8);
+  const double shaded = live.probe_at({1.4f, 0.3f, 1.4f}, {0, -1, 0}, true)["irradiance"][0];
+  live.command(R"({"node": 8, "shown": false})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["phase"] != "done"; }));
+  ASSERT_TRUE(live.done());
+  EXPECT_NE(live.probe_at({1.4f, 1.f, 1.4f}, {0, -1, 0}, false)["node"], 8);
+  const double open = live.probe_at({1.4f, 0.3f, 1.4f}, {0, -1, 0}, true)["irradiance"][0];
+  EXPECT_GT(open, 1.5 * shaded);
+  live.command(R"({"node": 8, "shown": true})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["phase"] != "done"; }));
+  ASSERT_TRUE(live.done());
+  EXPECT_EQ(live.probe_at({1.4f, 1.f, 1.4f}, {0, -1, 0}, false)["node"], 8);
+}
+
+TEST(LiveView, PausesStepsAndKeepsToLimits) {
+  Live live(room(), 0.02f);
+  live.command(R"({"paused": true})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["phase"] == "paused"; }));
+  const int before = live.status()["iterations"];
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(live.status()["iterations"], before);
+  live.command(R"({"step": true})");
+  ASSERT_TRUE(live.wait([&](const json& s) { return s["iterations"] == before + 1; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(live.status()["iterations"], before + 1);
+  live.command(R"({"paused": false, "links": 10})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["phase"] == "limited"; }));
+  live.command(R"({"links": 0})");
+  ASSERT_TRUE(live.wait([&](const json& s) { return s["iterations"] > before + 3; }));
+}
+
+TEST(LiveView, BeginsAnewWithOtherOptions) {
+  Live live;
+  ASSERT_TRUE(live.done());
+  const std::size_t coarse = live.status()["elements"];
+  live.command(R"({"featureSize": 0.1})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["featureSize"] < 0.2; }));
+  ASSERT_TRUE(live.done());
+  EXPECT_GT(live.status()["elements"].get<std::size_t>(), coarse);
+  live.command(R"({"visibility": "average"})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["visibility"] == "average"; }));
+}
+
+TEST(LiveView, RefinesWhatIsSeen) {
+  Live live;
+  ASSERT_TRUE(live.done());
+  const std::size_t before = live.status()["elements"];
+  live.command(
+      R"({"important": {"position": [0.5, 1.5, 0.5], "forward": [1, -1, 1], "fov": 0.8,
+          "width": 64, "height": 64}})");
+  ASSERT_TRUE(
+      live.wait([](const json& s) { return s["important"] == true && s["phase"] != "done"; }));
+  ASSERT_TRUE(live.done());
+  EXPECT_GT(live.status()["elements"].get<std::size_t>(), before);
+}
+
+TEST(LiveView, ShowsWhatTheSolverWorksWith) {
+  Live live;
+  ASSERT_TRUE(live.done());
+  const json seen = live.probe_at({1.4f, 1.f, 1.4f}, {0, -1, 0}, false);
+  const ElementId element(seen["element"]["id"].get<std::size_t>());
+  const auto ask = [&](const ViewSession::Question& question) {
+    const auto answer = live.session.ask(question, 20.0);
+    EXPECT_TRUE(answer) << (answer ? "" : answer.error().line());
+    return answer ? *answer : Packet().bytes();
+  };
+  const std::string elements = ask([](LiveSolution& l) { return elements_packet(l); });
+  EXPECT_GE(array_of<float>(elements, "lines").size() / 6,
+            3 * json_of(elements)["cells"].get<std::size_t>());
+  const std::string clusters = ask([](LiveSolution& l) { return clusters_packet(l, 1); });
+  const auto boxes = array_of<float>(clusters, "boxes");
+  ASSERT_FALSE(boxes.empty());
+  for (const float kappa : array_of<float>(clusters, "extinction")) EXPECT_GT(kappa, 0.f);
+  // The links of an element carry its irradiance, the light of lamps apart.
+  const std::string links = ask([=](LiveSolution& l) { return links_packet(l, element); });
+  float sum = 0.f;
+  for (const float e : array_of<float>(links, "values")) sum += e;
+  const json& cell = seen["element"];
+  const float indirect = cell["irradiance"][0].get<float>() - cell["direct"][0].get<float>();
+  EXPECT_NEAR(sum, indirect, 0.1f * indirect);
+  const std::string errors = ask([](LiveSolution& l) { return error_packet(l); });
+  EXPECT_TRUE(json_of(errors)["measured"].get<bool>());
+  double mean = 0.0;
+  const auto values = array_of<float>(errors, "values");
+  for (const float e : values) mean += static_cast<double>(e) / static_cast<double>(values.size());
+  EXPECT_GT(mean, 0.0);
+  EXPECT_LT(mean, 0.2);
+  const json bins = json::parse(ask([](LiveSolution& l) { return histogram(l); }));
+  std::size_t counted = 0;
+  for (const json& count : bins["counts"]) counted += count.get<std::size_t>();
+  EXPECT_GT(counted, 0u);
+  ViewOfInterest view;
+  view.camera.position = {0.3f, 1.5f, 0.3f};
+  view.camera.forward = glm::normalize(Vec3(1.f, -1.f, 1.f));
+  view.width = view.height = 320;
+  const auto classes = array_of<std::uint32_t>(
+      ask([&](LiveSolution& l) { return feature_mask_packet(l, view, 8.f); }), "classes");
+  EXPECT_GT(std::count(classes.begin(), classes.end(), 2u), 100) << "the table throws a shadow";
+  EXPECT_GT(std::count(classes.begin(), classes.end(), 0u), 100);
+}
+
+TEST(LiveView, TellsWhyThereIsNothingToSee) {
+  ViewSession broken([]() -> Result<Scene> { return input_error("bad", "room.glb", "mend it"); },
+                     {});
+  const auto start = Clock::now();
+  while (!broken.failure() && Clock::now() - start < std::chrono::seconds(5))
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const json s = json::parse(broken.status());
+  EXPECT_EQ(s["phase"], "failed");
+  EXPECT_THAT(s["sentence"].get<std::string>(), HasSubstr("bad"));
+  EXPECT_EQ(s["remedy"], "mend it");
+  EXPECT_FALSE(broken.ask([](LiveSolution&) -> Result<std::string> { return std::string(); }, 1.0));
+
+  Live empty{Scene()};
+  ASSERT_TRUE(empty.wait([](const json& s2) { return s2["phase"] == "failed"; }));
+  EXPECT_THAT(empty.status()["sentence"].get<std::string>(), HasSubstr("no triangles"));
+
+  QuadScene dark;
+  dark.box({0, 0, 0}, {1, 1, 1}, dark.material(0.5f), true);
+  Live unlit(dark.scene);
+  ASSERT_TRUE(unlit.wait([](const json& s2) { return s2["version"].get<int>() > 0; }));
+  EXPECT_THAT(unlit.status()["sentence"].get<std::string>(), HasSubstr("gives light"));
+  EXPECT_THAT(unlit.status()["remedy"].get<std::string>(), HasSubstr("--sky"));
+}
+
+TEST(LiveView, EndsInTheMiddleOfAnything) {
+  for (const int milliseconds : {0, 1, 20, 100, 400}) {
+    Live live(room(), 0.02f);
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+  }
+}
+
+}  // namespace
+}  // namespace halflight
