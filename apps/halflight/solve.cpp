@@ -24,7 +24,7 @@ namespace halflight::app {
 namespace {
 
 struct Outputs {
-  std::filesystem::path lit;
+  LitArguments lit;
   SensorArguments sensors;
   std::filesystem::path report;
   std::filesystem::path checkpoint;
@@ -43,7 +43,7 @@ void warn(const std::string& text) {
 }
 
 void warn_without_output(const Outputs& outputs) {
-  if (outputs.lit.empty() && outputs.sensors.points.empty() && outputs.report.empty() &&
+  if (outputs.lit.path.empty() && outputs.sensors.points.empty() && outputs.report.empty() &&
       outputs.checkpoint.empty())
     warn("nothing will be written (add -o lit.glb, --points, --report or --checkpoint)");
 }
@@ -131,6 +131,7 @@ Result<int> run(const SolveCommand& command) {
   const auto start = std::chrono::steady_clock::now();
   Result<SolvePlan> plan = resolve(command.solve);
   if (!plan) return tl::unexpected(plan.error());
+  if (auto ok = check(command.outputs.lit); !ok) return tl::unexpected(ok.error());
   const auto sensors = read_sensors(command.outputs.sensors);
   if (!sensors) return tl::unexpected(sensors.error());
   Result<Scene> scene = load(command.scene);
@@ -177,7 +178,7 @@ Result<int> run(const SolveCommand& command) {
     if (!written) return tl::unexpected(written.error());
     report.end_phase("sensors", phase);
   }
-  if (!command.outputs.lit.empty()) {
+  if (!command.outputs.lit.path.empty()) {
     auto written = write_lit(command.outputs.lit, state, report, progress);
     if (!written) return tl::unexpected(written.error());
   }
@@ -201,7 +202,7 @@ void add_solve(CLI::App& cli, int& status) {
   CLI::App& sub = *cli.add_subcommand("solve", "light a scene");
   add_scene_arguments(sub, command->scene);
   add_solve_arguments(sub, command->solve);
-  sub.add_option("-o,--output", command->outputs.lit, "lit scene, GLB")->type_name("lit.glb");
+  add_lit_arguments(sub, command->outputs.lit);
   add_sensor_arguments(sub, command->outputs.sensors);
   sub.add_option("--report", command->outputs.report, "what was done, JSON")->type_name("FILE");
   CLI::Option* checkpoint =

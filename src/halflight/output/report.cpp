@@ -85,6 +85,17 @@ void Report::set_lit_mesh(const LitMesh& mesh, float exposure) {
   exposure_ = exposure;
 }
 
+void Report::set_lightmap(const Lightmap& map) {
+  lightmap_ = LightmapNumbers{.size = map.layout.size,
+                              .charts = map.charts.charts.size(),
+                              .read = map.read,
+                              .covered = map.covered,
+                              .texels_per_metre = map.layout.texels_per_metre,
+                              .filled = map.layout.filled,
+                              .seams_as_read = map.seam_difference_as_read,
+                              .seams = map.seam_difference};
+}
+
 std::string Report::json(const SolverState& state) const {
   nlohmann::json report;
   report["input"] = input(state);
@@ -121,6 +132,15 @@ std::string Report::json(const SolverState& state) const {
                           {"triangles", mesh_triangles_},
                           {"readings", mesh_readings_},
                           {"exposure", exposure_}};
+  if (lightmap_)
+    report["lightmap"] = {{"size", lightmap_->size},
+                          {"charts", lightmap_->charts},
+                          {"texels_read", lightmap_->read},
+                          {"texels_covered", lightmap_->covered},
+                          {"texels_per_metre", lightmap_->texels_per_metre},
+                          {"filled", lightmap_->filled},
+                          {"seam_difference_as_read", lightmap_->seams_as_read},
+                          {"seam_difference", lightmap_->seams}};
   return report.dump(2) + "\n";
 }
 
