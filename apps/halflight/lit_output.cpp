@@ -11,9 +11,12 @@
 #include "halflight/output/exposure.h"
 #include "halflight/output/lit_mesh.h"
 #include "halflight/output/read_light.h"
+#include "halflight/solve/memory.h"
 
 namespace halflight::app {
 namespace {
+
+constexpr std::size_t kBytesOfTexel = 110;  // of a lightmap, until its files are written
 
 Result<int> lightmap_size(const std::string& text) {
   int size = 0;
@@ -66,18 +69,35 @@ Result<void> check(const LitArguments& arguments) {
   return size ? Result<void>() : tl::unexpected(size.error());
 }
 
+std::size_t least_memory(const LitArguments& arguments, std::size_t vertices) {
+  if (arguments.path.empty()) return 0;
+  std::size_t bytes = bytes_of_lit_mesh(vertices);
+  if (!arguments.lightmap) return bytes;
+  const auto size = lightmap_size(*arguments.lightmap);
+  const auto side = static_cast<std::size_t>(size ? *size : 0);
+  return bytes + side * side * kBytesOfTexel;
+}
+
+LitMeshOptions lit_mesh_options(const SolverState& state, const LitArguments& arguments) {
+  LitMeshOptions options;
+  options.feature_size = state.options.feature_size;
+  options.finest = finest_mesh_edge(state);
+  if (state.options.memory == 0) return options;
+  const std::size_t used = counted_bytes(state) + least_memory(arguments, 0);
+  const std::size_t left = state.options.memory - std::min(state.options.memory, used);
+  options.max_vertices = std::min(options.max_vertices, left / bytes_of_lit_mesh(1));
+  return options;
+}
+
 Result<void> write_lit(const LitArguments& arguments, const SolverState& state, Report& report,
                        const Progress& progress) {
   const World& world = *state.world;
   const SolutionReader reader(state, kMeshReading);
-  LitMeshOptions options;
-  options.feature_size = state.options.feature_size;
-  options.finest = finest_mesh_edge(state);
   auto phase = std::chrono::steady_clock::now();
   LitMesh mesh = build_lit_mesh(
       world.scene, world.geometry,
-      [&](std::span<const ReadingPoint> points) { return reader(points, progress); }, options,
-      progress);
+      [&](std::span<const ReadingPoint> points) { return reader(points, progress); },
+      lit_mesh_options(state, arguments), progress);
   report.end_phase("lit mesh", phase);
   const float exposure = automatic_exposure(world.scene, world.geometry, mesh.primitives);
 

@@ -9,6 +9,7 @@
 
 #include "halflight/base/progress.h"
 #include "halflight/base/result.h"
+#include "halflight/output/lit_mesh.h"
 #include "halflight/output/report.h"
 #include "halflight/solve/solver.h"
 
@@ -22,6 +23,12 @@ struct LitArguments {
 void add_lit_arguments(CLI::App& command, LitArguments& arguments);
 // Tells of bad arguments before any work is done.
 Result<void> check(const LitArguments& arguments);
+
+// Bytes that writing takes at least, for scenes of so many vertices.
+std::size_t least_memory(const LitArguments& arguments, std::size_t vertices);
+
+// As fine as the light asks for and a limit on memory allows.
+LitMeshOptions lit_mesh_options(const SolverState& state, const LitArguments& arguments = {});
 
 // Writes lit.glb and, with a lightmap, lit.lightmap.exr (irradiance) and lit.lightmap.png (to look
 // at) beside it. Also tells the report how long it took and what they are like. When there is no

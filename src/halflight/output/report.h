@@ -23,6 +23,7 @@ class Report {
   void end_phase(const std::string& name, Clock::time_point start);
   void set_lit_mesh(const LitMesh& mesh, float exposure);
   void set_lightmap(const Lightmap& map);
+  void set_memory_limit(std::size_t bytes) { memory_limit_ = bytes; }
   void set_estimated_error(const EstimatedError& error) { error_ = error; }
 
   std::string json(const SolverState& state) const;
@@ -30,6 +31,8 @@ class Report {
  private:
   Clock::time_point start_;
   std::vector<std::pair<std::string, double>> phases_;
+  std::vector<std::pair<std::string, std::size_t>> peaks_;  // resident, bytes
+  std::size_t memory_limit_ = 0;
   bool has_mesh_ = false;
   std::size_t mesh_vertices_ = 0, mesh_triangles_ = 0, mesh_readings_ = 0;
   float exposure_ = 0.f;
