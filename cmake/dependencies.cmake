@@ -23,6 +23,7 @@ endforeach()
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tsl-robin-map REQUIRED)
+find_package(Eigen3 REQUIRED)
 
 # Debian brings no CMake package for these: linked by their plain names, here and by a consumer.
 find_library(HALFLIGHT_ZSTD zstd REQUIRED)

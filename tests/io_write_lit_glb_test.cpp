@@ -232,6 +232,41 @@ TEST_F(LitGlb, KeepsNamesHierarchyCamerasAndTextureCoordinates) {
   EXPECT_TRUE(document["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_1"));
 }
 
+// Where a texture needs set 1 the lightmap goes to the next one, and the material says so.
+TEST_F(LitGlb, LightmapTakesTheFirstSetThatNoTextureNeeds) {
+  Scene s;
+  const TextureId picture = s.textures.push_back({});
+  const MaterialId plain = add_material(s, "plain", Rgb(0.5f), Rgb(0));
+  const MaterialId textured = add_material(s, "textured", Rgb(0.5f), Rgb(0));
+  s.materials[textured].reflectance_texture = {picture, 1};
+  for (const MaterialId m : {plain, textured}) add_node(s, "wall", Mat4(1.0), add_square(s, m));
+  const Geometry g = flatten(s);
+  lit = light_up(s, g);
+  for (LitPrimitive& p : lit)
+    for (const Vec3& at : p.positions) p.lightmap_uvs.emplace_back(0.5f * at.x, 0.25f * at.y);
+  ASSERT_TRUE(write_lit_glb(path, s, g, lit, 1.f, {"wall.exr", 64}));
+  const test::GlbFile file(path);
+  EXPECT_EQ(file.document["asset"]["extras"]["lightmap"]["uri"], "wall.exr");
+  for (std::size_t i = 0; i < 2; ++i) {
+    const json& primitive = file.document["meshes"][i]["primitives"][0];
+    const json& attributes = primitive["attributes"];
+    const char* set = i == 0 ? "TEXCOORD_1" : "TEXCOORD_2";
+    ASSERT_TRUE(attributes.contains(set));
+    EXPECT_EQ(attributes.contains("TEXCOORD_2"), i == 1);
+    const auto uvs = file.floats(attributes[set]);
+    ASSERT_EQ(uvs.size(), 2 * lit[i].lightmap_uvs.size());
+    for (std::size_t v = 0; v < lit[i].lightmap_uvs.size(); ++v) {
+      EXPECT_EQ(uvs[2 * v], lit[i].lightmap_uvs[v].x);
+      EXPECT_EQ(uvs[2 * v + 1], lit[i].lightmap_uvs[v].y);
+    }
+    const json& material = file.document["materials"][primitive["material"].get<std::size_t>()];
+    EXPECT_EQ(material.contains("extras"), i == 1);
+    if (i == 1) {
+      EXPECT_EQ(material["extras"]["lightmap"]["texCoord"], 2);
+    }
+  }
+}
+
 TEST_F(LitGlb, AMillionVerticesTakeAboutASecond) {
   constexpr std::size_t kSide = 1000;
   Scene s;

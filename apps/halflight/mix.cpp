@@ -19,7 +19,7 @@ struct MixArguments {
   CheckpointArguments checkpoint;
   std::vector<std::string> groups;
   SensorArguments sensors;
-  std::filesystem::path lit;
+  LitArguments lit;
   int threads = 0;
 };
 
@@ -68,6 +68,7 @@ Result<std::vector<Rgb>> factors_of(const MixArguments& arguments,
 }
 
 Result<void> mix_groups(const MixArguments& arguments) {
+  if (auto ok = check(arguments.lit); !ok) return ok;
   const auto sensors = read_sensors(arguments.sensors);
   if (!sensors) return tl::unexpected(sensors.error());
   Result<SolverState> state = restore(arguments.checkpoint);
@@ -82,7 +83,7 @@ Result<void> mix_groups(const MixArguments& arguments) {
   if (!sensors->empty())
     if (auto written = write_irradiance(arguments.sensors, *state, *sensors); !written)
       return written;
-  if (arguments.lit.empty()) return {};
+  if (arguments.lit.path.empty()) return {};
   Report report;
   return write_lit(arguments.lit, *state, report, Progress(terminal_progress()));
 }
@@ -100,7 +101,7 @@ void add_mix(CLI::App& cli, int& status) {
       ->expected(1)
       ->take_all();
   add_sensor_arguments(command, arguments->sensors);
-  command.add_option("-o,--output", arguments->lit, "lit scene, GLB")->type_name("lit.glb");
+  add_lit_arguments(command, arguments->lit);
   command.add_option("--threads", arguments->threads, "0: all cores")
       ->check(CLI::Range(0, 4096).description(""))
       ->type_name("N")

@@ -12,6 +12,8 @@
 #include "halflight/output/solution_image.h"
 #include "halflight/rays/automatic_view.h"
 #include "halflight/rays/path_traced_image.h"
+#include "halflight/solve/memory.h"
+#include "lit_output.h"
 #include "scene_arguments.h"
 #include "solve_arguments.h"
 #include "solve_run.h"
@@ -48,8 +50,8 @@ Result<void> check_for_checkpoint(const CLI::App& command, const RenderArguments
   std::vector<const char*> fixed{"--unit", "--up", "--sky"};
   if (arguments.path_trace == 0)
     fixed.insert(fixed.end(),
-                 {"--visibility", "--feature-size", "--error", "--time", "--links", "--hierarchy",
-                  "--intra-cluster", "--importance", "--feature-sizes"});
+                 {"--visibility", "--feature-size", "--error", "--time", "--memory", "--links",
+                  "--hierarchy", "--intra-cluster", "--importance", "--feature-sizes"});
   for (const char* option : fixed)
     if (command.get_option(option)->count() > 0)
       return input_error(fmt::format("{} is already settled by the checkpoint", option),
@@ -62,12 +64,15 @@ Result<SolverState> solve(const RenderArguments& arguments,
   Result<SolvePlan> plan = resolve(arguments.solve);
   if (!plan) return tl::unexpected(plan.error());
   if (auto ok = complete(*plan, arguments.solve, *world); !ok) return tl::unexpected(ok.error());
-  SolverState state = make_state(world, plan->options);
+  Result<SolverState> begun = begin_solve(world, plan->options);
+  if (!begun) return begun;
+  SolverState& state = *begun;
   // A deadline ends the refinement and not the picture.
   Progress solving(progress_listener(arguments.solve));
   const Deadline deadline(solving, arguments.solve, Deadline::Clock::now());
   run_to_goal(state, plan->goals, deadline, solving, false);
-  return state;
+  if (state.options.memory > 0) drop_links(state);
+  return begun;
 }
 
 Result<Image> solved_image(const RenderArguments& arguments,
@@ -79,12 +84,10 @@ Result<Image> solved_image(const RenderArguments& arguments,
   if (!solved) return tl::unexpected(solved.error());
   const SolverState& state = *solved;
   const SolutionReader reader(state, kMeshReading);
-  LitMeshOptions mesh_options;
-  mesh_options.feature_size = state.options.feature_size;
-  mesh_options.finest = finest_mesh_edge(state);
   const LitMesh mesh = build_lit_mesh(
       world->scene, world->geometry,
-      [&](std::span<const ReadingPoint> points) { return reader(points); }, mesh_options, progress);
+      [&](std::span<const ReadingPoint> points) { return reader(points); }, lit_mesh_options(state),
+      progress);
   return solution_image(state, SolutionReader(state, kPixelReading), mesh,
                         CameraRays(view.camera, view.width, view.height), view.width, view.height,
                         arguments.samples_per_pixel, progress);

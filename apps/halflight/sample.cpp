@@ -1,10 +1,12 @@
-// halflight sample CHECKPOINT --points FILE: irradiance at sensors of a scene that was solved.
+// halflight sample CHECKPOINT: irradiance at sensors of a scene that was solved, or all of it lit.
 #include <memory>
 
 #include "checkpoint_arguments.h"
 #include "commands.h"
 #include "halflight/base/parallel.h"
+#include "lit_output.h"
 #include "sensor_arguments.h"
+#include "terminal_progress.h"
 
 namespace halflight::app {
 namespace {
@@ -12,15 +14,25 @@ namespace {
 struct SampleArguments {
   CheckpointArguments checkpoint;
   SensorArguments sensors;
+  LitArguments lit;
   int threads = 0;
 };
 
 Result<void> sample(const SampleArguments& arguments) {
+  if (auto ok = check(arguments.lit); !ok) return ok;
+  if (arguments.sensors.points.empty() && arguments.lit.path.empty())
+    return input_error("there is nothing to write", arguments.checkpoint.path.string(),
+                       "give --points FILE or -o lit.glb");
   const auto sensors = read_sensors(arguments.sensors);
   if (!sensors) return tl::unexpected(sensors.error());
   const Result<SolverState> state = restore(arguments.checkpoint);
   if (!state) return tl::unexpected(state.error());
-  return write_irradiance(arguments.sensors, *state, *sensors);
+  if (!sensors->empty())
+    if (auto written = write_irradiance(arguments.sensors, *state, *sensors); !written)
+      return written;
+  if (arguments.lit.path.empty()) return {};
+  Report report;
+  return write_lit(arguments.lit, *state, report, Progress(terminal_progress()));
 }
 
 }  // namespace
@@ -29,7 +41,8 @@ void add_sample(CLI::App& cli, int& status) {
   auto arguments = std::make_shared<SampleArguments>();
   CLI::App& command = *cli.add_subcommand("sample", "irradiance at sensors of a solved scene");
   add_checkpoint_arguments(command, arguments->checkpoint);
-  add_sensor_arguments(command, arguments->sensors)->required();
+  add_sensor_arguments(command, arguments->sensors);
+  add_lit_arguments(command, arguments->lit);
   command.add_option("--threads", arguments->threads, "0: all cores")
       ->check(CLI::Range(0, 4096).description(""))
       ->type_name("N")

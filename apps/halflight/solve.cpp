@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "commands.h"
 #include "halflight/base/parallel.h"
 #include "halflight/io/atomic_file.h"
@@ -12,6 +14,7 @@
 #include "halflight/output/report.h"
 #include "halflight/scene/scene_digest.h"
 #include "halflight/solve/checkpoint.h"
+#include "halflight/solve/memory.h"
 #include "halflight/solve/mix.h"
 #include "interrupt.h"
 #include "lit_output.h"
@@ -24,7 +27,7 @@ namespace halflight::app {
 namespace {
 
 struct Outputs {
-  std::filesystem::path lit;
+  LitArguments lit;
   SensorArguments sensors;
   std::filesystem::path report;
   std::filesystem::path checkpoint;
@@ -43,7 +46,7 @@ void warn(const std::string& text) {
 }
 
 void warn_without_output(const Outputs& outputs) {
-  if (outputs.lit.empty() && outputs.sensors.points.empty() && outputs.report.empty() &&
+  if (outputs.lit.path.empty() && outputs.sensors.points.empty() && outputs.report.empty() &&
       outputs.checkpoint.empty())
     warn("nothing will be written (add -o lit.glb, --points, --report or --checkpoint)");
 }
@@ -66,15 +69,25 @@ Result<void> check_groups(const Outputs& outputs, const SolverState& state) {
                      outputs.checkpoint.string(), "give the same --light-groups");
 }
 
+// A file that is as large as the limit cannot even be read.
+Result<void> check_file_size(const std::filesystem::path& path, std::size_t memory) {
+  std::error_code unknown;
+  const auto bytes = std::filesystem::file_size(path, unknown);
+  if (memory == 0 || unknown || bytes < memory) return {};
+  return input_error(fmt::format("--memory {} MiB leaves no room to read this file", memory >> 20),
+                     path.string(), fmt::format("give more than {} MiB", (bytes >> 20) + 1));
+}
+
 // The state to begin with: fresh, or that of the checkpoint.
 Result<SolverState> begin(const Outputs& outputs, const std::shared_ptr<const World>& world,
                           const SolveOrigin& origin) {
   const auto fresh = [&]() -> Result<SolverState> {
-    SolverState state = make_state(world, origin.options);
-    if (!outputs.groups) return state;
+    auto state = begin_solve(world, origin.options,
+                             least_memory(outputs.lit, most_vertices_of_input(*world)));
+    if (!state || !outputs.groups) return state;
     auto groups = find_light_groups(world->scene, *outputs.groups);
     if (!groups) return tl::unexpected(groups.error());
-    set_groups(state, std::move(*groups));
+    set_groups(*state, std::move(*groups));
     return state;
   };
   if (!outputs.resume) return fresh();
@@ -131,8 +144,11 @@ Result<int> run(const SolveCommand& command) {
   const auto start = std::chrono::steady_clock::now();
   Result<SolvePlan> plan = resolve(command.solve);
   if (!plan) return tl::unexpected(plan.error());
+  if (auto ok = check(command.outputs.lit); !ok) return tl::unexpected(ok.error());
   const auto sensors = read_sensors(command.outputs.sensors);
   if (!sensors) return tl::unexpected(sensors.error());
+  if (auto ok = check_file_size(command.scene.path, plan->options.memory); !ok)
+    return tl::unexpected(ok.error());
   Result<Scene> scene = load(command.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
@@ -170,6 +186,7 @@ Result<int> run(const SolveCommand& command) {
     report.end_phase("light groups", phase);
   }
   const auto saved = saver.end(state);
+  if (state.options.memory > 0) drop_links(state);
 
   if (!sensors->empty()) {
     phase = std::chrono::steady_clock::now();
@@ -177,7 +194,7 @@ Result<int> run(const SolveCommand& command) {
     if (!written) return tl::unexpected(written.error());
     report.end_phase("sensors", phase);
   }
-  if (!command.outputs.lit.empty()) {
+  if (!command.outputs.lit.path.empty()) {
     auto written = write_lit(command.outputs.lit, state, report, progress);
     if (!written) return tl::unexpected(written.error());
   }
@@ -185,6 +202,7 @@ Result<int> run(const SolveCommand& command) {
   const int status = interruptible.interrupted()                 ? kInterrupted
                      : progress.cancelled() || !outcome.goal_met ? kBudgetEnded
                                                                  : kGoalMet;
+  report.set_memory_limit(state.options.memory);
   if (outcome.error) report.set_estimated_error(*outcome.error);
   if (!command.outputs.report.empty()) {
     auto written = write_text_atomically(command.outputs.report, report.json(state));
@@ -201,7 +219,7 @@ void add_solve(CLI::App& cli, int& status) {
   CLI::App& sub = *cli.add_subcommand("solve", "light a scene");
   add_scene_arguments(sub, command->scene);
   add_solve_arguments(sub, command->solve);
-  sub.add_option("-o,--output", command->outputs.lit, "lit scene, GLB")->type_name("lit.glb");
+  add_lit_arguments(sub, command->outputs.lit);
   add_sensor_arguments(sub, command->outputs.sensors);
   sub.add_option("--report", command->outputs.report, "what was done, JSON")->type_name("FILE");
   CLI::Option* checkpoint =

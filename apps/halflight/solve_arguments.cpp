@@ -35,6 +35,10 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
   command.add_option("--time", arguments.time, "stop refining at this wall time, e.g. 10s")
       ->type_name("DUR");
   command
+      .add_option("--memory", arguments.memory,
+                  "stay below this resident size and light more coarsely instead, e.g. 2GiB")
+      ->type_name("SIZE");
+  command
       .add_option("--links", arguments.links,
                   "refined: by the error oracle alone; sampled: by rays on the elements it shaped; "
                   "auto: what measures best, sampled; N: no more than these")
@@ -99,6 +103,13 @@ Result<SolvePlan> resolve(const SolveArguments& arguments) {
           "write it like 'sampled' or 250k");
     plan.goals.links = static_cast<std::size_t>(std::min(*most, 1e15));
     plan.options.most_links = std::min(plan.options.most_links, *plan.goals.links);
+  }
+  if (!arguments.memory.empty()) {
+    const Result<double> memory = parse_size(arguments.memory);
+    if (!memory || !(*memory >= 1.0))
+      return input_error(fmt::format("--memory '{}' is not a size", arguments.memory), {},
+                         "write it like 2GiB or 500MB");
+    plan.options.memory = static_cast<std::size_t>(std::min(*memory, 1e15));
   }
   if (!arguments.time.empty())
     if (const Result<double> time = parse_duration(arguments.time); !time)

@@ -22,6 +22,7 @@ struct SolveArguments {
   std::string error;  // empty: 5 %, not measured
   std::string time;   // empty: no deadline
   std::string progress = "auto";
+  std::string memory;              // empty: no limit
   std::vector<std::string> links;  // who makes them, or how many at most
   std::string importance = "none";
   std::filesystem::path feature_sizes;  // rules; empty: none

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "halflight/hierarchy/live_sides.h"
+#include "halflight/solve/memory.h"
+
 namespace halflight::app {
 namespace {
 
@@ -11,6 +16,7 @@ constexpr double kShareOfTimeLeft = 0.25;
 // With a budget of links one iteration refines at most this share of those that are left, as
 // several come of each.
 constexpr std::size_t kShareOfLinksLeft = 8, kShareOfSampledLinksLeft = 2;
+constexpr std::size_t kLeastForLinks = 32u << 20;
 constexpr int kMostRounds = 4;      // of measuring the error and aiming at a smaller one
 constexpr float kLeastGain = 0.9f;  // of the error by a round that was worth its time
 constexpr float kSmallestStep = 1.5f, kLargestStep = 4.f;  // of the error that is aimed at
@@ -42,11 +48,39 @@ bool run_schedule(SolverState& state, const SolveGoals& goals, const Deadline& d
 
 }  // namespace
 
+Result<SolverState> begin_solve(const std::shared_ptr<const World>& world,
+                                const SolveOptions& options, std::size_t for_outputs) {
+  if (options.memory == 0) return make_state(world, options);
+  const auto check = [&](std::size_t bytes, const char* of) -> Result<void> {
+    if (bytes <= options.memory) return {};
+    return input_error(
+        fmt::format("--memory {} MiB leaves no room for {}", options.memory >> 20, of), {},
+        fmt::format("give at least {} MiB", (bytes >> 20) + 1));
+  };
+  const std::size_t of_world = bytes_of_world(*world);
+  const std::size_t triangles = world->geometry.triangles.size();
+  if (auto ok = check(of_world + bytes_of_hierarchy(triangles, 0), "the scene"); !ok)
+    return tl::unexpected(ok.error());
+  const auto surfaces = std::make_shared<const Surfaces>(build_surfaces(world->geometry));
+  const std::size_t bytes = of_world + bytes_of_hierarchy(triangles, surfaces->surfaces.size());
+  if (auto ok = check(bytes + kLeastForLinks, "the scene and its hierarchy"); !ok)
+    return tl::unexpected(ok.error());
+  if (auto ok = check(bytes + for_outputs, "the lit scene (-o)"); !ok)
+    return tl::unexpected(ok.error());
+  return make_state(world, surfaces,
+                    find_live_sides(world->scene, world->geometry, *surfaces, world->rays),
+                    options);
+}
+
 SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Deadline& deadline,
                          const Progress& progress, bool wants_error,
                          const std::function<void(const SolverState&)>& after_iteration) {
   SolveOutcome outcome;
-  outcome.goal_met = run_schedule(state, goals, deadline, progress, after_iteration);
+  const auto run = [&] {
+    return run_schedule(state, goals, deadline, progress, after_iteration) &&
+           state.schedule.short_of_memory == 0;
+  };
+  outcome.goal_met = run();
   if (!goals.error && !(wants_error && outcome.goal_met)) return outcome;
   // No time is left to measure in.
   if (progress.cancelled() || (deadline.set() && !outcome.goal_met)) return outcome;
@@ -62,7 +96,7 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
     }
     const float before = outcome.error->relative_rms;
     aim_finer(state, std::clamp(before / *goals.error, kSmallestStep, kLargestStep));
-    outcome.goal_met = run_schedule(state, goals, deadline, progress, after_iteration);
+    outcome.goal_met = run();
     if (progress.cancelled()) break;
     outcome.error = probes.measure(state);
     if (outcome.error->relative_rms > std::max(*goals.error, kLeastGain * before))

@@ -15,6 +15,11 @@ struct SolveOutcome {
   std::optional<EstimatedError> error;
 };
 
+// A fresh state; an error where a limit on memory leaves no room for the scene, its hierarchy and
+// `for_outputs`, bytes that writing takes after the links are gone.
+Result<SolverState> begin_solve(const std::shared_ptr<const World>& world,
+                                const SolveOptions& options, std::size_t for_outputs = 0);
+
 // `after_iteration` is called with a valid state. The error is measured when it is a goal, or when
 // `wants_error`.
 SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Deadline& deadline,

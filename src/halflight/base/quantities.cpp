@@ -52,4 +52,18 @@ Result<double> parse_count(std::string_view text) {
   return parse(text, units, "count", "write it like 250000, 250k or 2M");
 }
 
+Result<double> parse_size(std::string_view text) {
+  constexpr std::array<Unit, 10> units{{{"", 1.0},
+                                        {"B", 1.0},
+                                        {"kB", 1e3},
+                                        {"MB", 1e6},
+                                        {"GB", 1e9},
+                                        {"TB", 1e12},
+                                        {"KiB", 0x1p10},
+                                        {"MiB", 0x1p20},
+                                        {"GiB", 0x1p30},
+                                        {"TiB", 0x1p40}}};
+  return parse(text, units, "size", "write it like 2GiB or 500MB");
+}
+
 }  // namespace halflight

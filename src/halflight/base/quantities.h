@@ -12,4 +12,6 @@ Result<double> parse_duration(std::string_view text);  // "10", "10s", "2m", "50
 Result<double> parse_percent(std::string_view text);   // "5%", "5": 0.05
 Result<double> parse_count(std::string_view text);     // "250000", "250k", "2M"
 
+Result<double> parse_size(std::string_view text);  // "2GiB", "500MB", "1048576": bytes
+
 }  // namespace halflight

@@ -84,10 +84,15 @@ struct LitFile {
   const Scene& scene;
   const Geometry& geometry;
   float exposure;
+  bool has_lightmap = false;
   GlbBuilder glb{};
   TextureWriter textures{scene, glb};
   std::map<std::pair<MaterialId, bool>, std::pair<int, LitMaterial>> materials{};
 };
+
+// The set of texture coordinates for the lightmap: the first after those that textures need, and
+// not the first of all.
+int lightmap_set(const Material& m) { return std::max(1, uv_sets_needed(m)); }
 
 const std::pair<int, LitMaterial>& material_of(LitFile& file, MaterialId id, bool back) {
   const Material& m = file.scene.materials[id];
@@ -96,6 +101,8 @@ const std::pair<int, LitMaterial>& material_of(LitFile& file, MaterialId id, boo
   if (entry != file.materials.end()) return entry->second;
   LitMaterial lit = lit_material(m, emits, file.exposure, file.textures);
   file.glb.use_extension("KHR_materials_unlit");
+  if (file.has_lightmap && lightmap_set(m) != 1)
+    lit.json["extras"]["lightmap"]["texCoord"] = lightmap_set(m);
   const int index = file.glb.append("materials", lit.json);
   return file.materials.emplace(std::pair{id, emits}, std::pair{index, std::move(lit)})
       .first->second;
@@ -121,12 +128,16 @@ json primitive_json(LitFile& file, const LitPrimitive& p, const Mat4& world) {
                   {"COLOR_0", glb.add_vectors(vertex_colors(p, lit, file.exposure))},
                   {"_IRRADIANCE", glb.add_vectors(p.irradiance)}};
   // A set 1 without a set 0 is invalid, and so is a texture without its set: zeros fill the gap.
+  const Material& source = file.scene.materials[id];
+  const bool has_lightmap = !p.lightmap_uvs.empty();
   const int present = p.uvs[1].empty() ? (p.uvs[0].empty() ? 0 : 1) : 2;
-  const int needed = std::max(present, uv_sets_needed(file.scene.materials[id]));
+  const int needed =
+      has_lightmap ? lightmap_set(source) : std::max(present, uv_sets_needed(source));
   const std::vector<Vec2> zeros(needed > 0 ? p.positions.size() : 0, Vec2(0.f));
   for (int set = 0; set < needed; ++set)
     attributes["TEXCOORD_" + std::to_string(set)] =
         glb.add_uvs(p.uvs[set].empty() ? zeros : p.uvs[set]);
+  if (has_lightmap) attributes["TEXCOORD_" + std::to_string(needed)] = glb.add_uvs(p.lightmap_uvs);
   return {{"attributes", std::move(attributes)},
           {"indices", glb.add_triangles(local.triangles, local.positions.size())},
           {"material", material}};
@@ -195,15 +206,23 @@ Result<void> check(const std::vector<LitPrimitive>& primitives, const std::files
 
 Result<void> write_lit_glb(const std::filesystem::path& path, const Scene& scene,
                            const Geometry& geometry, const std::vector<LitPrimitive>& primitives,
-                           float exposure) {
+                           float exposure, const LightmapFile& lightmap) {
   if (auto ok = check(primitives, path); !ok) return ok;
-  LitFile file{.scene = scene, .geometry = geometry, .exposure = exposure};
+  LitFile file{.scene = scene,
+               .geometry = geometry,
+               .exposure = exposure,
+               .has_lightmap = !lightmap.name.empty()};
   write_cameras_and_lights(scene, file.glb);
   json roots = json::array();
   json nodes = write_nodes(file, primitives, roots);
-  const json extras{{"exposure", exposure},
-                    {"color_0", "clamp(exposure * irradiance / pi), emission included"},
-                    {"irradiance", "_IRRADIANCE, per vertex, linear"}};
+  json extras{{"exposure", exposure},
+              {"color_0", "clamp(exposure * irradiance / pi), emission included"},
+              {"irradiance", "_IRRADIANCE, per vertex, linear"}};
+  if (file.has_lightmap)
+    extras["lightmap"] = {{"uri", lightmap.name},
+                          {"size", lightmap.size},
+                          {"texCoord", 1},
+                          {"texels", "irradiance, linear, not divided by pi"}};
   json root{{"extras", extras}};
   if (!roots.empty()) {
     root["nodes"] = std::move(roots);

@@ -140,6 +140,19 @@ ElementId SolutionReader::leaf_at(const ReadingPoint& point) const {
   return state_->tree.find_leaf(state_->surfaces->side_hit(there), point.position);
 }
 
+bool SolutionReader::is_covered(const ReadingPoint& point) const {
+  const RayScene& rays = state_->world->rays;
+  const Vec3 from = rays.lift(point.position, point.normal);
+  const auto hit = rays.closest_hit(from, point.normal, kInfinity, hash(point.triangle.value));
+  return hit && !state_->tree.leaf_hit(*hit).valid();
+}
+
+std::vector<std::uint8_t> SolutionReader::covered(std::span<const ReadingPoint> points) const {
+  std::vector<std::uint8_t> covered(points.size());
+  parallel_for(points.size(), 64, [&](std::size_t i) { covered[i] = is_covered(points[i]); });
+  return covered;
+}
+
 bool SolutionReader::matters_to_nobody(const ReadingPoint& point) const {
   if (state_->importance.empty() || !point.triangle.valid()) return false;
   const ElementId leaf = leaf_at(point);

@@ -45,6 +45,11 @@ class SolutionReader {
   // The light of the cell that the point lies in, without a ray: blocky, and at once.
   Reading of_cell(const ReadingPoint& point) const;
 
+  // Inside of a closed body that stands on the surface.
+  bool is_covered(const ReadingPoint& point) const;
+  // Of each point, in parallel: 1 when it is.
+  std::vector<std::uint8_t> covered(std::span<const ReadingPoint> points) const;
+
   // Emitting surfaces, punctual lights and sky. Different shifts put shadow rays elsewhere: a
   // pixel's samples each have their own, the same for all pixels, so that steps in penumbrae
   // average out and no noise comes in.

@@ -2,9 +2,9 @@
 
 #include <ctime>
 
-#include <sys/resource.h>
 #include <nlohmann/json.hpp>
 
+#include "halflight/base/memory.h"
 #include "halflight/base/parallel.h"
 
 namespace halflight {
@@ -59,15 +59,10 @@ json history(const SolverState& state) {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-std::size_t peak_rss_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
-}
-
 }  // namespace
 
 void Report::end_phase(const std::string& name, Clock::time_point start) {
+  peaks_.emplace_back(name, peak_resident_bytes());
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   for (auto& [known, sum] : phases_)
     if (known == name) {
@@ -85,14 +80,30 @@ void Report::set_lit_mesh(const LitMesh& mesh, float exposure) {
   exposure_ = exposure;
 }
 
+void Report::set_lightmap(const Lightmap& map) {
+  lightmap_ = LightmapNumbers{.size = map.layout.size,
+                              .charts = map.charts.charts.size(),
+                              .read = map.read,
+                              .covered = map.covered,
+                              .texels_per_metre = map.layout.texels_per_metre,
+                              .filled = map.layout.filled,
+                              .seams_as_read = map.seam_difference_as_read,
+                              .seams = map.seam_difference};
+}
+
 std::string Report::json(const SolverState& state) const {
   nlohmann::json report;
   report["input"] = input(state);
   report["settings"] = settings(state);
   for (const auto& [name, seconds] : phases_) report["phases"][name] = seconds;
+  for (const auto& [name, bytes] : peaks_) report["memory"]["peak_by_end_of"][name] = bytes;
+  if (memory_limit_ > 0) {
+    report["memory"]["limit"] = memory_limit_;
+    report["memory"]["made_coarser"] = state.schedule.short_of_memory != 0;
+  }
   report["wall_seconds"] = std::chrono::duration<double>(Clock::now() - start_).count();
   report["cpu_seconds"] = cpu_seconds();
-  report["peak_rss_bytes"] = peak_rss_bytes();
+  report["peak_rss_bytes"] = peak_resident_bytes();
   int sweeps = 0;
   for (const IterationRecord& i : state.history) sweeps += i.sweeps;
   const std::uint64_t through_clusters = state.visibility->ray_total();
@@ -103,7 +114,7 @@ std::string Report::json(const SolverState& state) const {
                             static_cast<double>(std::max<std::uint64_t>(1, through_clusters))}};
   report["clusters"] = state.tree.cluster_total();
   report["elements"] = state.tree.size();
-  report["links"] = state.link_total();
+  report["links"] = state.history.empty() ? state.link_total() : state.history.back().links;
   report["sweeps"] = sweeps;
   const EnergyBalance energy = energy_balance(state);
   report["energy"] = {{"emitted", rgb(energy.emitted)},
@@ -121,6 +132,15 @@ std::string Report::json(const SolverState& state) const {
                           {"triangles", mesh_triangles_},
                           {"readings", mesh_readings_},
                           {"exposure", exposure_}};
+  if (lightmap_)
+    report["lightmap"] = {{"size", lightmap_->size},
+                          {"charts", lightmap_->charts},
+                          {"texels_read", lightmap_->read},
+                          {"texels_covered", lightmap_->covered},
+                          {"texels_per_metre", lightmap_->texels_per_metre},
+                          {"filled", lightmap_->filled},
+                          {"seam_difference_as_read", lightmap_->seams_as_read},
+                          {"seam_difference", lightmap_->seams}};
   return report.dump(2) + "\n";
 }
 

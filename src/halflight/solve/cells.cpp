@@ -2,6 +2,7 @@
 
 #include "halflight/base/parallel.h"
 #include "halflight/rays/sampling.h"
+#include "halflight/solve/memory.h"
 #include "halflight/transport/outer_light.h"
 
 namespace halflight {
@@ -230,12 +231,13 @@ void update_given_light(SolverState& state, float irradiance_threshold) {
   }
   const float scene_area = state.tree[state.tree.root()].area;
   const float total_power = received_power(state);
+  bool may_split = true;
   while (!open.empty()) {
     std::vector<std::uint8_t> uneven(open.size());
     parallel_for(open.size(), 16, [&](std::size_t i) {
       const ElementId e = open[i];
       // As with links: what is kept had no say in whether to split (transport/refine.cpp).
-      if (state.tree.cell_size(e) > 2.f * smallest_cell(state, e)) {
+      if (may_split && state.tree.cell_size(e) > 2.f * smallest_cell(state, e)) {
         const GivenLight pilot = sample_given_light(state, e, kPointsOfCell, kPilot);
         const float error = pilot.deviation * std::sqrt(state.tree[e].area / scene_area);
         uneven[i] = error > state.tolerance[e] * irradiance_threshold;
@@ -250,6 +252,12 @@ void update_given_light(SolverState& state, float irradiance_threshold) {
     std::vector<ElementId> split;
     for (std::size_t i = 0; i < open.size(); ++i)
       if (uneven[i]) split.push_back(open[i]);
+    if (!split.empty() && state.tree.size() + 2 * split.size() > memory_room(state).elements) {
+      state.schedule.short_of_memory = 1;
+      may_split = false;
+      open = std::move(split);
+      continue;
+    }
     open.clear();
     for (const ElementId e : split) {
       state.tree.split(e);

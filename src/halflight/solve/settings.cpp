@@ -32,6 +32,7 @@ void for_each_setting(Options& o, const Visit& visit) {
   visit("intra-cluster", o.intra_cluster);
   visit("levels", o.levels);
   visit("most-links", o.most_links);
+  visit("memory", o.memory);
 }
 
 template <class T, std::size_t n>

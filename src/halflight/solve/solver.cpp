@@ -11,6 +11,7 @@
 #include "halflight/hierarchy/live_sides.h"
 #include "halflight/solve/cells.h"
 #include "halflight/solve/importance.h"
+#include "halflight/solve/memory.h"
 #include "halflight/solve/sweep.h"
 #include "halflight/transport/emitter_tree.h"
 #include "halflight/transport/outer_light.h"
@@ -36,7 +37,9 @@ constexpr float kLeastSampling = 0.125f, kMostSampling = 8.f;
 constexpr int kSweepsOfShortIteration = 2;
 constexpr int kFirstGuessOfSweeps = 10;
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
+constexpr float kFewestRays = 6.f;  // of a cell; its refined links serve better
 constexpr std::size_t kReceiversAtOnce = 1 << 14;
+constexpr std::size_t kReceiversAtOnceInLittleMemory = 1 << 11;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -210,7 +213,9 @@ void refine_pairs(SolverState& state, std::vector<ElementPair> pairs, bool shape
   options.feature_scale = std::pow(kFeatureRatio, static_cast<float>(levels_left(state)));
   options.finest_cell = finest_cell(state);
   options.largest_blind_cell = 2.f * kBlindCells;
-  options.most_links = state.options.most_links;
+  const MemoryRoom room = memory_room(state);
+  options.most_links = std::min(state.options.most_links, room.refined_links);
+  options.most_elements = room.elements;
   options.shape_only = shape_only;
   options.inside = state.inside.get();
   record.refined = pairs.size();
@@ -220,6 +225,8 @@ void refine_pairs(SolverState& state, std::vector<ElementPair> pairs, bool shape
       std::move(pairs), options,
       [&](const std::vector<ElementId>& split) { inherit(state, split); }, progress, links, counts);
   record.pairs = counts.pairs;
+  if (counts.accepted_early > 0 && state.options.memory > 0 && !progress.cancelled())
+    state.schedule.short_of_memory = 1;
   update_given_light(state, record.irradiance_threshold);
 }
 
@@ -306,13 +313,42 @@ double share_done(const SolverState& state) {
   return 1.0;
 }
 
+// Fewer rays where the links of those and of all that still wait would not fit into memory; 0 where
+// next to none do.
+float share_of_rays_within(const SolverState& state, const std::vector<ElementId>& receivers,
+                           std::size_t roots, const SampledLinkOptions& options) {
+  if (state.options.memory == 0) return 1.f;
+  double wanted = 0.0;
+  for (const ElementId e : receivers)
+    wanted += state.tree[e].is_cluster() ? options.rays_per_cluster : options.rays_per_cell;
+  const auto waiting = static_cast<double>(roots + state.schedule.receivers.size());
+  wanted *= waiting / static_cast<double>(std::max<std::size_t>(1, roots));
+  const auto room = static_cast<double>(memory_room(state).sampled_links);
+  return wanted > room ? static_cast<float>(room / wanted) : 1.f;
+}
+
 // Gives sampled links to the next k receivers.
 void sample_receivers(SolverState& state, std::size_t k, IterationRecord& record) {
   std::vector<ElementId>& waiting = state.schedule.receivers;
   const auto first = waiting.end() - static_cast<std::ptrdiff_t>(std::min(k, waiting.size()));
   const std::vector<ElementId> receivers(first, waiting.end());
   waiting.erase(first, waiting.end());
-  const SampledLinkOptions options = sampled_link_options(state);
+  SampledLinkOptions options = sampled_link_options(state);
+  const float share =
+      share_of_rays_within(state, choose_receivers(state.tree, receivers, state.feature_sizes),
+                           receivers.size(), options);
+  if (share < 1.f) {
+    state.schedule.short_of_memory = 1;
+    // Fewer rays than in the round before would be no gain.
+    if (state.schedule.round > 1 ||
+        share * static_cast<float>(options.rays_per_cell) < kFewestRays) {
+      waiting.clear();
+      return;
+    }
+    options.rays_per_cell = static_cast<int>(share * static_cast<float>(options.rays_per_cell));
+    options.rays_per_cluster =
+        static_cast<int>(share * static_cast<float>(options.rays_per_cluster));
+  }
   hand_over(state, receivers);
   give_light_to_clusters(state, receivers);
   update_given_light(state, record.irradiance_threshold);
@@ -337,13 +373,14 @@ void sample_links(SolverState& state, std::size_t k, const Progress& progress,
                   IterationRecord& record) {
   Schedule& todo = state.schedule;
   for (std::size_t left = k; left > 0 && !todo.receivers.empty() && !progress.cancelled();) {
-    const std::size_t n = std::min(left, kReceiversAtOnce);
+    const std::size_t n = std::min(
+        left, state.options.memory > 0 ? kReceiversAtOnceInLittleMemory : kReceiversAtOnce);
     sample_receivers(state, n, record);
     left -= n;
     progress.report("solve", share_done(state));
   }
   if (!todo.receivers.empty()) return;
-  if (todo.round > 1) forget_earlier_rounds(state);
+  if (todo.round > 1 && todo.short_of_memory == 0) forget_earlier_rounds(state);
   todo.stage = Stage::converge;
 }
 
@@ -389,6 +426,12 @@ void begin_stage(SolverState& state, bool in_short_iterations) {
       std::erase_if(todo.receivers,
                     [&](ElementId e) { return state.importance[e] < kNegligibleImportance; });
     todo.receiver_total = todo.receivers.size();
+    if (state.options.memory > 0)
+      state.sampled_links.reserve(
+          state.sampled_links.stored() +
+          std::min(memory_room(state).sampled_links,
+                   todo.receiver_total *
+                       static_cast<std::size_t>(2 * sampled_link_options(state).rays_per_cluster)));
     if (in_short_iterations) shuffle_blocks(todo.receivers);
   }
 }

@@ -46,6 +46,7 @@ struct SolveOptions {
   bool intra_cluster = true;
   int levels = 3;  // of the threshold, coarse to fine
   std::size_t most_links = 40'000'000;
+  std::size_t memory = 0;  // bytes that must do, see memory.h; 0: no limit
 };
 
 struct SolverState {

@@ -48,6 +48,10 @@ class LinkTable {
   LinkTable(std::span<const std::uint32_t> counts, std::vector<Link> links);
 
   std::size_t size() const { return size_; }
+  // Links that take memory: those of `size` and those that were forgotten.
+  std::size_t stored() const { return links_.size(); }
+  // Growing to so many in all will not copy what is there.
+  void reserve(std::size_t links) { links_.reserve(links); }
   std::span<const Link> of(ElementId receiver) const {
     if (!rows_.contains(receiver)) return {};
     return {links_.data() + rows_[receiver].first, rows_[receiver].count};

@@ -185,7 +185,8 @@ void refine(ElementTree& tree, const Visibility& visibility,
     const std::size_t n = std::min(pairs.size(), kBatch);
     batch.assign(pairs.end() - static_cast<std::ptrdiff_t>(n), pairs.end());
     pairs.resize(pairs.size() - n);
-    const bool accept_all = links.size() > options.most_links || progress.cancelled();
+    const bool accept_all = links.size() > options.most_links ||
+                            tree.size() > options.most_elements || progress.cancelled();
 
     const TransferScene scene{tree, visibility, 0.f, radiosity, opacity, options.inside};
     const Oracle oracle(scene, options, tolerance, accept_all);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "halflight/base/progress.h"
@@ -42,11 +43,12 @@ struct RefineOptions {
   // Inside clusters that exchange light as one; null: not known.
   const ClusterVisibility* inside = nullptr;
   std::size_t most_links = 40'000'000;  // beyond it pairs are accepted as they are, and counted
+  std::size_t most_elements = std::numeric_limits<std::size_t>::max();  // the same
 };
 
 struct RefineCounts {
   std::uint64_t pairs = 0;           // visited
-  std::uint64_t accepted_early = 0;  // because most_links was reached
+  std::uint64_t accepted_early = 0;  // because a limit was reached
 };
 
 struct ElementPair {

@@ -1,0 +1,14 @@
+// What the process holds of the machine's memory.
+#pragma once
+
+#include <cstddef>
+
+namespace halflight {
+
+std::size_t resident_bytes();       // now
+std::size_t peak_resident_bytes();  // at most, so far
+
+// Gives freed memory back to the system, as far as it can be.
+void return_free_memory();
+
+}  // namespace halflight
