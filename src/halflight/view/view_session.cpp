@@ -221,6 +221,13 @@ bool ViewSession::start() {
                     Error::Kind::input};
     return false;
   }
+  if (plan_.complete)
+    if (auto ok = plan_.complete(live_.options, *live_.world); !ok) {
+      const std::lock_guard lock(mutex_);
+      failure_ = ok.error();
+      return false;
+    }
+  begin(live_);
   {
     const std::lock_guard lock(mutex_);
     world_ = live_.world;
