@@ -26,7 +26,7 @@ TEST_F(MemoryCommand, TheProcessStaysBelowTheLimit) {
   const std::string solve =
       "solve room.obj --feature-size 4mm --progress none --report r.json --memory ";
   double least_links = 1e18;
-  for (const char* limit : {"4GiB", "57MiB"}) {
+  for (const char* limit : {"4GiB", "46MiB"}) {
     const bool generous = std::string(limit) == "4GiB";
     ASSERT_EQ(run(solve + limit), generous ? 0 : 4) << text("err");
     const auto report = read_json(path("r.json"));

@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include <fmt/format.h>
+
 #include "halflight/base/hash.h"
 #include "halflight/base/parallel.h"
 #include "halflight/io/checkpoint_file.h"
@@ -93,7 +95,7 @@ TEST_F(CheckpointFile, SaysWhatIsWrong) {
   Bytes other = whole;
   other[kCheckpointMagic.size()] += 1;
   rewrite(other);
-  EXPECT_THAT(failure(), HasSubstr("is of version 2"));
+  EXPECT_THAT(failure(), HasSubstr(fmt::format("is of version {}", kCheckpointVersion + 1)));
   rewrite(Bytes(whole.begin(), whole.end() - 1));
   EXPECT_THAT(failure(), HasSubstr("cut short"));
   other = whole;

@@ -16,7 +16,7 @@ constexpr double kShareOfTimeLeft = 0.25;
 // With a budget of links one iteration refines at most this share of those that are left, as
 // several come of each.
 constexpr std::size_t kShareOfLinksLeft = 8, kShareOfSampledLinksLeft = 2;
-constexpr std::size_t kLeastForLinks = 32u << 20;
+constexpr std::size_t kLeastForLinks = 20u << 20;
 constexpr int kMostRounds = 4;      // of measuring the error and aiming at a smaller one
 constexpr float kLeastGain = 0.9f;  // of the error by a round that was worth its time
 constexpr float kSmallestStep = 1.5f, kLargestStep = 4.f;  // of the error that is aimed at
