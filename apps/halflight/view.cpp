@@ -33,7 +33,8 @@ struct LiveViewArguments {
 Result<ViewPlan> plan_of(const SolveArguments& arguments) {
   const Result<SolvePlan> plan = resolve(arguments);
   if (!plan) return tl::unexpected(plan.error());
-  ViewPlan result{.options = plan->options};
+  ViewPlan result;
+  result.options = plan->options;
   result.complete = [&arguments](SolveOptions& options, const World& world) -> Result<void> {
     SolvePlan completed{options, {}};
     if (auto ok = complete(completed, arguments, world); !ok) return ok;
