@@ -15,3 +15,4 @@ mkdir -p out
 echo "Picture:         out/demo.png"
 echo "Lit scene:       out/demo.glb (opens in any glTF viewer)"
 echo "What was done:   out/demo.json"
+echo "Watch it live:   build/release/bin/halflight view out/office.glb"

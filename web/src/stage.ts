@@ -7,9 +7,11 @@ import type { View } from './connection'
 const kFrameMilliseconds = 33
 const kCoarsest = 0.5 // of the full resolution while the camera moves
 const kRestMilliseconds = 250
-const kLargeMesh = 500_000 // triangles: of larger meshes only the largest are drawn while they move
-const kFewestDrawn = 100_000
-const kSlowMilliseconds = 80 // a frame of a large mesh
+const kLargeMesh = 500_000 // triangles: of larger meshes only the largest are drawn, as many as go
+const kMovingMilliseconds = 80 // a frame of a large mesh that moves
+const kStillMilliseconds = 700
+const kFirstRate = 1000 // triangles in a millisecond, until it is known
+const kFewestDrawn = 50_000
 
 export class Stage {
   readonly scene = new THREE.Scene()
@@ -32,8 +34,9 @@ export class Stage {
   private lastMotion = 0
   private resolution = 1
   private applied = 0
-  private budget = Infinity // triangles
-  private drawnBudget = Infinity
+  private rate = kFirstRate
+  private drawn = 0 // triangles of a large mesh
+  private drawing: { fence: WebGLSync; since: number } | null = null
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true })
@@ -74,8 +77,8 @@ export class Stage {
     this.scene.add(this.mesh)
     this.header = h
     this.epoch = h.epoch
-    this.drawnBudget = Infinity
-    this.budget = h.triangles > kLargeMesh ? Math.min(this.budget, 2 * kFewestDrawn) : Infinity
+    this.drawn = 0
+    this.chooseTriangles(true)
     const sky = h.sky as number[]
     this.scene.background = Math.max(...sky) > 0 ? new THREE.Color(0x9fb4c8) : new THREE.Color(0x101214)
     const far = 20 * Math.max(1e-3, this.bounds.getSize(new THREE.Vector3()).length())
@@ -204,21 +207,35 @@ export class Stage {
     this.renderer.setSize(this.canvas.clientWidth, this.canvas.clientHeight, false)
   }
 
-  // By how long the last frame of a movement took.
-  private adaptBudget(milliseconds: number): void {
-    const all = this.header?.triangles ?? 0
-    if (all <= kLargeMesh) return void (this.budget = Infinity)
-    const now = Math.min(all, this.budget)
-    if (milliseconds > kSlowMilliseconds) this.budget = Math.max(kFewestDrawn, 0.6 * now)
-    else if (milliseconds < 0.4 * kSlowMilliseconds) this.budget = Math.min(all, 1.1 * now)
+  private isLarge(): boolean {
+    return (this.header?.triangles ?? 0) > kLargeMesh
   }
 
-  // Triangles come by size, the largest of each material first.
-  private applyBudget(budget: number): void {
-    if (this.drawnBudget === budget || !this.mesh) return
-    this.drawnBudget = budget
-    const share = Math.min(1, budget / Math.max(1, this.header!.triangles))
-    this.mesh.geometry.groups.forEach((g, i) => (g.count = 3 * Math.ceil(share * this.header!.draws[i].count)))
+  // Of a large mesh, whether the last frame has left the graphics card or what stands for one; how
+  // long it took tells how many triangles the next may have.
+  private isDrawn(): boolean {
+    if (!this.drawing) return true
+    const gl = this.renderer.getContext() as WebGL2RenderingContext
+    if (gl.clientWaitSync(this.drawing.fence, 0, 0) === gl.TIMEOUT_EXPIRED) return false
+    gl.deleteSync(this.drawing.fence)
+    const milliseconds = Math.max(1, performance.now() - this.drawing.since)
+    this.rate += 0.5 * (this.drawn / milliseconds - this.rate)
+    this.drawing = null
+    return true
+  }
+
+  // Triangles come by size, the largest of each material first. False: as many as the last time.
+  private chooseTriangles(moving: boolean): boolean {
+    if (!this.isLarge() || !this.mesh) return false
+    const all = this.header!.triangles as number
+    const budget = this.rate * (moving ? kMovingMilliseconds : kStillMilliseconds)
+    const wanted = Math.min(all, Math.max(kFewestDrawn, budget))
+    // At rest more is drawn when it is worth it.
+    if (!moving && this.drawn >= Math.min(all, wanted / 1.5)) return false
+    if (moving && this.drawn <= wanted && wanted < 1.2 * this.drawn) return false
+    this.drawn = wanted
+    this.mesh.geometry.groups.forEach((g, i) => (g.count = 3 * Math.ceil((wanted / all) * this.header!.draws[i].count)))
+    return true
   }
 
   // While something moves, resolution is given up for pace; at rest the picture is whole again.
@@ -228,23 +245,28 @@ export class Stage {
     this.lastFrame = time
     const moving = this.beforeDraw(seconds)
     if (moving) {
-      if (time - this.lastMotion < 1000) {
+      if (time - this.lastMotion < 100) {
         const slow = 1000 * seconds > 1.2 * kFrameMilliseconds
         const fast = 1000 * seconds < 0.6 * kFrameMilliseconds
         if (slow) this.resolution = Math.max(kCoarsest, this.resolution * 0.8)
         else if (fast) this.resolution = Math.min(1, this.resolution * 1.05)
-        this.adaptBudget(time - this.lastMotion)
       }
       this.lastMotion = time
     }
     const atRest = time - this.lastMotion > kRestMilliseconds
     const resolution = atRest ? 1 : Math.round(this.resolution * 8) / 8
-    const budget = atRest ? Infinity : this.budget
-    if (!this.wanted && !moving && this.applied === resolution && this.drawnBudget === budget) return
+    if (!this.isDrawn()) return
+    const more = this.chooseTriangles(!atRest)
+    if (!this.wanted && !moving && this.applied === resolution && !more) return
     this.wanted = false
     this.applyResolution(resolution)
-    this.applyBudget(budget)
     this.renderer.render(this.scene, this.camera)
+    if (this.isLarge()) {
+      const gl = this.renderer.getContext() as WebGL2RenderingContext
+      const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0)
+      gl.flush()
+      if (fence) this.drawing = { fence, since: performance.now() }
+    }
     ++this.frames
     this.frameTimes.push(time)
     if (this.frameTimes.length > 240) this.frameTimes.splice(0, 120)

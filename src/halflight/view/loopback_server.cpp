@@ -181,7 +181,7 @@ std::string error_json(const std::string& text) {
   std::string safe;
   for (const char c : text)
     if (c != '"' && c != '\\' && static_cast<unsigned char>(c) >= 0x20) safe += c;
-  return fmt::format("{{\"error\":\"{}\"}}", safe);
+  return fmt::format(R"({{"error":"{}"}})", safe);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ inline std::uint32_t pack_rgb9e5(const Rgb& c) {
   int exponent = std::max(-16, std::ilogb(most)) + 1;
   if (most * std::ldexp(1.f, 9 - exponent) >= 511.5f) ++exponent;
   const float scale = std::ldexp(1.f, 9 - exponent);
-  const auto mantissa = [&](float x) { return static_cast<std::uint32_t>(x * scale + 0.5f); };
+  const auto mantissa = [&](float x) { return static_cast<std::uint32_t>(std::lround(x * scale)); };
   return mantissa(v.r) | mantissa(v.g) << 9 | mantissa(v.b) << 18 |
          static_cast<std::uint32_t>(exponent + 15) << 27;
 }

@@ -24,10 +24,12 @@ using nlohmann::json;
 constexpr std::size_t kMostWaiting = 64;  // in the inbox
 // Iterations: the first is as short as can be, later ones may be longer, as long as a click need
 // not wait for them.
-constexpr double kFirstIteration = 0.02, kShortest = 0.05, kLongest = 0.2;
+constexpr double kFirstIteration = 0.02, kShortest = 0.05, kLongest = 0.3;
 constexpr double kShareOfElapsed = 0.1;
-// Publishing a frame may take this share of the time.
-constexpr double kPublishingShare = 0.25, kPublishAtLeast = 0.05;
+// Publishing a frame may take this share of the time. Frames get rarer as less changes from one to
+// the next: a page without a graphics card needs the solver's cores to draw each.
+constexpr double kPublishingShare = 0.25, kPublishAtLeast = 0.05, kPublishAtMost = 1.0;
+constexpr double kPublishingGrowth = 0.1;         // of the interval, by the seconds solved
 constexpr std::size_t kEvenVertices = 60'000;     // of the first mesh, beside those of the scene
 constexpr std::size_t kMostVertices = 6'000'000;  // that a page is asked to hold
 constexpr std::size_t kMostSharpened = 700'000;   // vertices of the first mesh
@@ -307,10 +309,11 @@ void ViewSession::iterate() {
     share_ = state.done() ? 1.0 : 0.0;
   }
   const double waited = seconds_since(last_publication_);
+  const double interval =
+      std::max(std::clamp(kPublishingGrowth * solving_seconds_, kPublishAtLeast, kPublishAtMost),
+               publishing_seconds_ / kPublishingShare);
   const bool idle_next = !may_advance();
-  if (frames_since_restart_ < 2 || idle_next ||
-      waited > std::max(kPublishAtLeast, publishing_seconds_ / kPublishingShare))
-    publish_light();
+  if (frames_since_restart_ < 2 || idle_next || waited > interval) publish_light();
   if (idle_next && !state.done()) set_phase(paused_ ? Phase::paused : Phase::limited);
   publish_status();
 }
