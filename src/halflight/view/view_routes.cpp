@@ -147,7 +147,7 @@ WebReply picture(ViewSession& session, const WebRequest& request) {
 
 }  // namespace
 
-LoopbackServer::Handler view_routes(ViewSession& session, PageFiles page) {
+LoopbackServer::Handler view_routes(ViewSession& session, const PageFiles& page) {
   using Route = std::function<WebReply(const WebRequest&)>;
   std::map<std::pair<bool, std::string>, Route> routes;
   for (const auto& [path, file] : page)

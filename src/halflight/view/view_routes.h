@@ -17,6 +17,6 @@ struct PageFile {
 using PageFiles = std::map<std::string, PageFile, std::less<>>;  // by path; "" is the page itself
 
 // The session must outlive the server that gets this handler.
-LoopbackServer::Handler view_routes(ViewSession& session, PageFiles page);
+LoopbackServer::Handler view_routes(ViewSession& session, const PageFiles& page);
 
 }  // namespace halflight

@@ -340,6 +340,9 @@ void ViewSession::light_changed() {
   sharp_.reset();
   error_.reset();
   last_change_ = Clock::now();
+  // What was done is done no more, before anybody is told of the change.
+  const std::lock_guard lock(mutex_);
+  phase_ = finished_ ? Phase::sharpening : Phase::solving;
 }
 
 void ViewSession::apply(const ViewCommand& command) {
@@ -393,6 +396,7 @@ void ViewSession::apply(const ViewCommand& command) {
     if (command.shown) edit.shown = *command.shown;
     if (same_triangles) {
       // The object is seen at its new place at once, in the light that it had.
+      set_phase(Phase::solving);
       if (mesh_.sharp) {
         const ViewMesh before = make_view_mesh(*live_.world, even_);
         draft_light_ = DraftLight(*live_.world, before).read(*live_.state).irradiance;
