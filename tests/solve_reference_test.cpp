@@ -135,8 +135,8 @@ TEST(SolvedLight, HolesInLeavesPassLight) {
   expect_as_path_traced(scene, 0.1f);
 }
 
-// Large lamps in a black room: direct light alone, from the closed-form view of the emitter tree.
-TEST(EmitterTreeLight, IsTheDirectLightOfThePathTracer) {
+// 25 lamps of many sizes under the ceiling of a black room that holds a box.
+QuadScene room_of_lamps() {
   QuadScene scene;
   const MaterialId black = scene.material(0.f);
   scene.box({0, 0, 0}, {3, 2.5f, 4}, black, true);
@@ -147,6 +147,12 @@ TEST(EmitterTreeLight, IsTheDirectLightOfThePathTracer) {
       scene.quad({0.3f + 0.5f * static_cast<float>(i), 2.4f, 0.3f + 0.7f * static_cast<float>(k)},
                  {size, 0, 0}, {0, 0, 0.3f}, scene.material(0.f, 1.f + static_cast<float>(k)));
     }
+  return scene;
+}
+
+// Direct light alone, from the closed-form view of the emitter tree.
+TEST(EmitterTreeLight, IsTheDirectLightOfThePathTracer) {
+  const QuadScene scene = room_of_lamps();
   const SolverState state =
       make_state(make_world(scene.scene), testing::options_of(LinkMaker::sampled, 0.1f));
   const auto points = scatter_points(state, 150);
@@ -161,6 +167,36 @@ TEST(EmitterTreeLight, IsTheDirectLightOfThePathTracer) {
   EXPECT_LT(testing::quantile(deviation, 0.5f), 0.01f);
   EXPECT_LT(testing::quantile(deviation, 0.95f), 0.06f);
   EXPECT_NEAR(testing::mean(direct) / scale, 1.f, 0.005f);
+}
+
+// Weak lamps are chosen at random, one ray each: right on average at every place, shadows included.
+TEST(EmitterTreeLight, OfFewRaysIsRightOnAverage) {
+  const SolverState state =
+      make_state(make_world(room_of_lamps().scene), testing::options_of(LinkMaker::sampled, 0.1f));
+  const EmitterTree emitters(*state.visibility, find_emitters(*state.world));
+  const DirectLightOptions few{
+      .shadow_rays = 2, .penumbra_rays = 2, .largest_group_share = 0.2f, .smallest_angle = 0.01f};
+  const DirectLightOptions many{.shadow_rays = 2048,
+                                .penumbra_rays = 2048,
+                                .largest_group_share = 1e-4f,
+                                .smallest_angle = 1e-4f};
+  const auto points = scatter_points(state, 40);
+  for (const ReadingPoint& p : points) {
+    const float expected = average(emitters.irradiance(p.position, p.normal, many));
+    double sum = 0.0, squares = 0.0;
+    constexpr int kTries = 4000;
+    for (int k = 0; k < kTries; ++k) {
+      const auto e = static_cast<double>(
+          average(emitters.irradiance(p.position, p.normal, few, random_shift(hash(k, 3)))));
+      sum += e;
+      squares += e * e;
+    }
+    const double mean = sum / kTries;
+    const double noise = std::sqrt(std::max(0.0, squares / kTries - mean * mean) / kTries);
+    EXPECT_NEAR(mean, static_cast<double>(expected),
+                4.0 * noise + 0.01 * static_cast<double>(expected))
+        << p.position.x << ", " << p.position.y << ", " << p.position.z;
+  }
 }
 
 // Among black glowing cubes in a black glowing room every point receives pi L.

@@ -14,8 +14,13 @@ constexpr std::uint32_t kPointsOfCell = 4;
 constexpr float kShareOfPoint = 1e-4f;
 constexpr std::uint32_t kMostPoints = 16;
 constexpr int kSkyRays = 16;  // of each point
+
 constexpr DirectLightOptions kCellDirectLight{
     .shadow_rays = 8, .penumbra_rays = 8, .largest_group_share = 0.05f, .smallest_angle = 0.01f};
+// Cells that get less than a point's share, and are not much brighter than others.
+constexpr DirectLightOptions kSlightDirectLight{
+    .shadow_rays = 2, .penumbra_rays = 2, .largest_group_share = 0.2f, .smallest_angle = 0.01f};
+constexpr float kBright = 3.f;                  // in mean irradiances
 constexpr float kErrorOfAllShadowRays = 0.05f;  // larger ones take fewer, in proportion
 constexpr int kFewestShadowRays = 2;
 
@@ -48,12 +53,6 @@ float received_power(const SolverState& state) {
   }));
 }
 
-int shadow_rays(const SolverState& state) {
-  const float all = static_cast<float>(kCellDirectLight.shadow_rays);
-  return std::clamp(static_cast<int>(all * kErrorOfAllShadowRays / state.options.error),
-                    kFewestShadowRays, kCellDirectLight.shadow_rays);
-}
-
 // By what has been known before, so that the number has nothing to do with what is found.
 std::uint32_t points_of(const SolverState& state, ElementId cell, float total_power) {
   const bool whole_and_small = state.tree.cell_size(cell) < 2.f * smallest_cell(state, cell);
@@ -62,15 +61,33 @@ std::uint32_t points_of(const SolverState& state, ElementId cell, float total_po
                     whole_and_small ? 1u : kPointsOfCell, kMostPoints);
 }
 
+// Where a cell's light is noisy, little is lost if it is one of many like it.
+bool is_slight(const SolverState& state, ElementId cell, float total_power) {
+  const float mean = total_power / state.tree[state.tree.root()].area;
+  return received_power(state, cell) < kShareOfPoint * total_power &&
+         average(state.irradiance[cell]) < kBright * mean;
+}
+
+DirectLightOptions cell_direct_light(const SolverState& state, ElementId cell, float total_power) {
+  const bool slight = is_slight(state, cell, total_power);
+  DirectLightOptions options = slight ? kSlightDirectLight : kCellDirectLight;
+  const float share = kErrorOfAllShadowRays / state.options.error;
+  options.shadow_rays =
+      std::clamp(static_cast<int>(share * static_cast<float>(options.shadow_rays)),
+                 std::min(kFewestShadowRays, options.shadow_rays), options.shadow_rays);
+  options.penumbra_rays = options.shadow_rays;
+  options.feature_size = state.feature_sizes[cell];
+  return options;
+}
+
 // Of the part that is not covered. Light from emitters is left to refined links.
 GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uint32_t samples,
-                              std::uint64_t stream) {
+                              std::uint64_t stream, const DirectLightOptions& direct) {
   const EmitterTree* emitters = state.sampled[cell] != 0 ? state.emitters.get() : nullptr;
   const Vec3 n = state.tree.normal(cell);
   const float s = state.feature_sizes[cell];
-  DirectLightOptions options = kCellDirectLight;
-  options.feature_size = s;
-  options.shadow_rays = options.penumbra_rays = shadow_rays(state);
+  // All points of a pilot look at the same places: what differs then lies in the points.
+  const auto samples_of = [&](std::uint32_t k) { return hash(stream, stream == kPilot ? 0 : k); };
   GivenLight result;
   float sum = 0.f, squares = 0.f;
   const Vec2 shift = random_shift(hash(cell.value, stream, 11));
@@ -84,7 +101,7 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uin
                            random_shift(hash(cell.value, k, stream)), s);
     result.outer += e;
     if (emitters)
-      e += emitters->irradiance(x, n, options, random_shift(hash(cell.value, k, stream, 13)));
+      e += emitters->irradiance(x, n, direct, random_shift(hash(cell.value, samples_of(k), 13)));
     result.mean += e;
     sum += average(e);
     squares += average(e) * average(e);
@@ -236,15 +253,16 @@ void update_given_light(SolverState& state, float irradiance_threshold) {
     std::vector<std::uint8_t> uneven(open.size());
     parallel_for(open.size(), 16, [&](std::size_t i) {
       const ElementId e = open[i];
+      const DirectLightOptions direct = cell_direct_light(state, e, total_power);
       // As with links: what is kept had no say in whether to split (transport/refine.cpp).
       if (may_split && state.tree.cell_size(e) > 2.f * smallest_cell(state, e)) {
-        const GivenLight pilot = sample_given_light(state, e, kPointsOfCell, kPilot);
+        const GivenLight pilot = sample_given_light(state, e, kPointsOfCell, kPilot, direct);
         const float error = pilot.deviation * std::sqrt(state.tree[e].area / scene_area);
         uneven[i] = error > state.tolerance[e] * irradiance_threshold;
         if (uneven[i]) return;
       }
       const GivenLight light =
-          sample_given_light(state, e, points_of(state, e, total_power), kKept);
+          sample_given_light(state, e, points_of(state, e, total_power), kKept, direct);
       state.given_light[e] = light.mean;
       if (!state.outer_light.empty()) state.outer_light[e] = light.outer;
       state.given_light_known[e] = 1;

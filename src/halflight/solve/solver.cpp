@@ -34,6 +34,8 @@ constexpr float kLeastTolerance = 0.15f;
 // Smaller errors take more rays for each receiver, in proportion; larger ones fewer.
 constexpr float kErrorOfPlainSampling = 0.05f;
 constexpr float kLeastSampling = 0.125f, kMostSampling = 8.f;
+// SampledLinkOptions::area_of_all_rays of the scene's.
+constexpr float kAreaOfAllRays = 1.f / 4096.f;
 constexpr int kSweepsOfShortIteration = 2;
 constexpr int kFirstGuessOfSweeps = 10;
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
@@ -274,6 +276,7 @@ SampledLinkOptions sampled_link_options(const SolverState& state) {
       std::clamp(kErrorOfPlainSampling / state.options.error, kLeastSampling, kMostSampling);
   options.rays_per_cell = static_cast<int>(more * static_cast<float>(options.rays_per_cell));
   options.rays_per_cluster = static_cast<int>(more * static_cast<float>(options.rays_per_cluster));
+  options.area_of_all_rays = kAreaOfAllRays * state.tree[state.tree.root()].area;
   return options;
 }
 
@@ -320,7 +323,9 @@ float share_of_rays_within(const SolverState& state, const std::vector<ElementId
   if (state.options.memory == 0) return 1.f;
   double wanted = 0.0;
   for (const ElementId e : receivers)
-    wanted += state.tree[e].is_cluster() ? options.rays_per_cluster : options.rays_per_cell;
+    wanted += rays_of(state.tree, e,
+                      state.tree[e].is_cluster() ? options.rays_per_cluster : options.rays_per_cell,
+                      options);
   const auto waiting = static_cast<double>(roots + state.schedule.receivers.size());
   wanted *= waiting / static_cast<double>(std::max<std::size_t>(1, roots));
   const auto room = static_cast<double>(memory_room(state).sampled_links);

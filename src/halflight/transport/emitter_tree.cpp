@@ -21,6 +21,11 @@ constexpr float kFar = 5.f;
 constexpr float kMixed = 0.1f;
 // Places of a triangle looked at, however few rays go there.
 constexpr int kLeastPlaces = 8;
+// An emitter that gives this much of the light takes all rays, others in proportion.
+constexpr float kShareOfAllRays = 0.25f;
+// Distances from a group count from this much of its size.
+constexpr float kNearGroup = 0.25f;
+constexpr std::uint32_t kChoices = ~0u;  // a stream of samples beside those of the emitters
 // Directions below the horizon keep this much of the cosine that samples follow.
 constexpr float kLeastCosine = 0.01f;
 
@@ -290,35 +295,51 @@ Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3&
   return kernel_sum > 0.f ? kPi * form_factor * seen_radiance / kernel_sum : Rgb(0.f);
 }
 
-Rgb EmitterTree::from_group(const Node& node, const Vec3& x, const Vec3& n, int rays, Vec2 shift,
-                            float feature_size) const {
-  const Geometry& g = world_->geometry;
-  const Vec3 from = world_->rays.lift(x, n);
-  const float before = node.first == 0 ? 0.f : cumulative_power_[node.first - 1];
-  const auto begin = cumulative_power_.begin() + node.first;
-  // Which emitter and which point of it must not hang together.
-  const Vec2 point_shift = other_shift(shift, node.first);
-  Rgb sum(0.f);
-  for (int k = 0; k < rays; ++k) {
-    const float stratum = (static_cast<float>(k) + shift.x) / static_cast<float>(rays);
-    const auto found = std::upper_bound(begin, begin + node.count, before + stratum * node.power);
-    const auto offset = std::min<std::ptrdiff_t>(found - begin, node.count - 1);
-    const std::uint32_t index = node.first + static_cast<std::uint32_t>(offset);
-    const EmittingSide& e = emitters_[index];
-    const auto corner = g.corners(e.triangle);
-    const Vec2 b = uniform_triangle(r2_sequence(static_cast<std::uint32_t>(k), point_shift));
-    const Vec3 y = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
-    const Vec3 between = y - x;
-    const float squared = glm::dot(between, between);
-    const float cosines = std::max(0.f, glm::dot(n, between)) *
-                          std::max(0.f, -glm::dot(shapes_[index].normal, between));
-    if (!(cosines > 0.f)) continue;
-    // Chosen with density power / (area * node power): radiance / density, colour kept.
-    const Rgb colour = e.radiance / average(e.radiance);
-    sum +=
-        colour * (node.power * cosines / (squared * squared) * seen(index, from, y, feature_size));
+EmitterTree::ChosenEmitter EmitterTree::choose_below(std::uint32_t node, const Vec3& x,
+                                                     const Vec3& n, float choice) const {
+  // Unlike the bounds of the cut, no more than a middle estimate: what one group is thought to give
+  // too much, others would get too rarely.
+  const auto estimate = [&](const Node& group) {
+    if (group.right == 0) return expected_irradiance(group, x, n);
+    if (cannot_light(group, x, n)) return 0.f;
+    const Vec3 nearest = glm::clamp(x, group.box.lower, group.box.upper) - x;
+    const float size = kNearGroup * group.box.diagonal();
+    return group.power / std::max(glm::dot(nearest, nearest), size * size);
+  };
+  float probability = 1.f;
+  while (nodes_[node].right != 0) {
+    const std::uint32_t left = node + 1, right = nodes_[node].right;
+    const float a = estimate(nodes_[left]), b = estimate(nodes_[right]);
+    if (!(a + b > 0.f)) return {};
+    const float share = a / (a + b);
+    const bool first = choice < share;
+    choice = first ? choice / share : (choice - share) / (1.f - share);
+    probability *= first ? share : 1.f - share;
+    node = first ? left : right;
   }
-  return sum / static_cast<float>(rays);
+  return {nodes_[node].first, probability};
+}
+
+Rgb EmitterTree::from_some(std::span<const CutNode> nodes, const Vec3& x, const Vec3& n, int rays,
+                           Vec2 shift, float feature_size) const {
+  float expected = 0.f;
+  for (const CutNode& c : nodes) expected += c.expected;
+  const Vec2 choice_shift = other_shift(shift, kChoices);
+  Rgb sum(0.f);
+  std::size_t at = 0;
+  float before = 0.f;
+  for (int k = 0; k < rays; ++k) {
+    const auto index = static_cast<std::uint32_t>(k);
+    const Vec2 u = r2_sequence(index, choice_shift);
+    const float choice = expected * (static_cast<float>(k) + u.x) / static_cast<float>(rays);
+    while (at + 1 < nodes.size() && before + nodes[at].expected <= choice)
+      before += nodes[at++].expected;
+    const ChosenEmitter chosen = choose_below(nodes[at].node, x, n, u.y);
+    if (!(chosen.probability > 0.f)) continue;
+    sum += from_triangle(chosen.emitter, x, n, 1, 1, r2_sequence(index, shift), feature_size) /
+           (nodes[at].expected * chosen.probability);
+  }
+  return sum * (expected / static_cast<float>(rays));
 }
 
 std::optional<EmitterPoint> EmitterTree::choose(const Vec3& x, float radius, const Vec3& u) const {
@@ -355,23 +376,29 @@ std::optional<EmitterPoint> EmitterTree::choose(const Vec3& x, float radius, con
 Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options,
                             Vec2 shift) const {
   if (empty()) return Rgb(0.f);
-  const std::vector<CutNode> cut = choose_cut(x, n, options);
+  std::vector<CutNode> cut = choose_cut(x, n, options);
   float expected = 0.f;
   for (const CutNode& c : cut) expected += c.expected;
+  const auto alone = [&](const CutNode& c) {
+    return nodes_[c.node].right == 0 && c.expected > options.largest_group_share * expected;
+  };
+  const auto first_of_rest = std::stable_partition(cut.begin(), cut.end(), alone);
+  // Rays go where the light comes from.
+  const auto rays_for = [&](float light, int all) {
+    const float share = light / (kShareOfAllRays * expected);
+    return std::max(1, static_cast<int>(std::ceil(share * static_cast<float>(all))));
+  };
   Rgb sum(0.f);
-  for (const CutNode& c : cut) {
-    const Node& node = nodes_[c.node];
-    // Rays go where the light comes from: the full number to what gives half of it or more.
-    const float share = std::min(1.f, 2.f * c.expected / expected);
-    const auto rays_for = [&](int most) {
-      return std::max(1, static_cast<int>(std::ceil(share * static_cast<float>(most))));
-    };
-    if (node.right == 0)
-      sum += from_triangle(node.first, x, n, rays_for(options.shadow_rays),
-                           rays_for(options.penumbra_rays), shift, options.feature_size);
-    else
-      sum += from_group(node, x, n, rays_for(options.penumbra_rays), shift, options.feature_size);
+  float rest = expected;
+  for (auto c = cut.begin(); c != first_of_rest; ++c) {
+    rest -= c->expected;
+    const float light = std::min(c->expected, kShareOfAllRays * expected);
+    sum += from_triangle(nodes_[c->node].first, x, n, rays_for(light, options.shadow_rays),
+                         rays_for(light, options.penumbra_rays), shift, options.feature_size);
   }
+  if (first_of_rest != cut.end())
+    sum += from_some({first_of_rest, cut.end()}, x, n, rays_for(rest, options.penumbra_rays), shift,
+                     options.feature_size);
   return sum;
 }
 

@@ -1,9 +1,11 @@
 // A binary tree over the emitting triangles, for direct light by a cut: near emitters one by one,
-// far groups by sampled representatives (after Walter et al. 2005, "Lightcuts").
+// weak ones and far groups by some of them chosen at random (after Walter et al. 2005,
+// "Lightcuts").
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "halflight/base/vec.h"
@@ -13,9 +15,9 @@ namespace halflight {
 
 struct DirectLightOptions {
   int shadow_rays = 16;    // to an emitter that gives most of the light, before looking closer
-  int penumbra_rays = 64;  // where the first ones disagree
-  // A group stands for its members when it gives at most this share of the light at the point, or
-  // is seen under at most this angle (size / distance).
+  int penumbra_rays = 64;  // where the first ones disagree, and to all weak emitters together
+  // Emitters and groups of them are weak when they give at most this share of the light at the
+  // point, groups also when they are seen under at most this angle (size / distance).
   float largest_group_share = 0.01f;
   float smallest_angle = 0.01f;
   float feature_size = 0.f;  // of shadows that count, metres; 0: all
@@ -80,8 +82,15 @@ class EmitterTree {
   Vec3 normal_of(const EmittingSide& e) const;
   Rgb from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3& n, int rays, int more_rays,
                     Vec2 shift, float feature_size) const;
-  Rgb from_group(const Node& node, const Vec3& x, const Vec3& n, int rays, Vec2 shift,
-                 float feature_size) const;
+  // One ray each to emitters chosen at random below these nodes.
+  Rgb from_some(std::span<const CutNode> nodes, const Vec3& x, const Vec3& n, int rays, Vec2 shift,
+                float feature_size) const;
+  struct ChosenEmitter {
+    std::uint32_t emitter = 0;
+    float probability = 0.f;
+  };
+  // By what the emitters may give at x, choice in [0, 1); probability 0: none can light it.
+  ChosenEmitter choose_below(std::uint32_t node, const Vec3& x, const Vec3& n, float choice) const;
 
   struct Shape {
     Vec3 middle, normal;

@@ -9,6 +9,7 @@ namespace {
 
 // Tries to find a cell of a cluster that faces a given direction.
 constexpr std::uint32_t kFacingAttempts = 16;
+constexpr float kLeastShareOfRays = 0.125f;  // of a small receiver
 
 // Angle between neighbours among n rays that share a solid angle.
 float between_rays(float solid_angle, int n) {
@@ -94,7 +95,7 @@ float concentration(const ClusterVisibility* inside, ElementId cluster, const Ve
 void sample_cluster(const ElementTree& tree, const RayScene& rays,
                     const IdVector<ElementId, float>& opacity, ElementId cluster,
                     const SampledLinkOptions& options, std::vector<ReceiverLink>& links) {
-  const int n = options.rays_per_cluster;
+  const int n = rays_of(tree, cluster, options.rays_per_cluster, options);
   const Vec2 shift = random_shift(hash(cluster.value, 31));
   RayTally tally{links};
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
@@ -123,7 +124,8 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
   const World& world = visibility.world();
   const Element& c = tree[cluster];
   const float s = options.feature_size;
-  const auto n = static_cast<std::uint32_t>(options.shadow_rays_per_cluster);
+  const auto n =
+      static_cast<std::uint32_t>(rays_of(tree, cluster, options.shadow_rays_per_cluster, options));
   const float share = 1.f / static_cast<float>(n);
   DirectLight light;
   const auto add = [&](std::vector<Arrival>& to, const Vec3& w, const Rgb& facing) {
@@ -167,7 +169,7 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
       const Vec3 w = uniform_sphere(r2_sequence(k, shift));
       const auto x = facing_point(w, hash(cluster.value, k, 47));
       if (!x) continue;
-      const float angle = between_rays(4.f * kPi, options.shadow_rays_per_cluster);
+      const float angle = between_rays(4.f * kPi, static_cast<int>(n));
       add(light.from_outside, w,
           4.f * kPi * share * visibility.transmittance_to_sky(*x, w, s, angle) * world.scene.sky);
     }
@@ -189,6 +191,14 @@ std::vector<ElementId> choose_receivers(const ElementTree& tree, std::vector<Ele
   return receivers;
 }
 
+int rays_of(const ElementTree& tree, ElementId receiver, int rays,
+            const SampledLinkOptions& options) {
+  if (!(tree[receiver].area < options.area_of_all_rays)) return rays;
+  const float share =
+      std::max(kLeastShareOfRays, std::sqrt(tree[receiver].area / options.area_of_all_rays));
+  return std::max(1, static_cast<int>(share * static_cast<float>(rays)));
+}
+
 std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& rays,
                                        const IdVector<ElementId, float>& opacity,
                                        const std::vector<ElementId>& receivers,
@@ -199,7 +209,8 @@ std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& 
         if (tree[e].is_cluster())
           sample_cluster(tree, rays, opacity, e, options, links);
         else
-          sample_cell(tree, rays, opacity, e, options.rays_per_cell, links);
+          sample_cell(tree, rays, opacity, e, rays_of(tree, e, options.rays_per_cell, options),
+                      links);
       });
 }
 

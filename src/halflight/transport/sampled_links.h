@@ -20,7 +20,10 @@ struct SampledLinkOptions {
   int rays_per_cell = 64;
   int rays_per_cluster = 128;
   int shadow_rays_per_cluster = 32;  // to emitters, as many to the sky, one to each punctual light
-  float feature_size = 0.f;          // of shadows in direct light that count; 0: all
+  // Receivers of less area (m2) take fewer of all these, by its square root: what they send on is
+  // averaged with much else. 0: all take all.
+  float area_of_all_rays = 0.f;
+  float feature_size = 0.f;  // of shadows in direct light that count; 0: all
   // Where it knows a receiving cluster, a link's weight counts where the cluster is seen from the
   // link's direction, or in the hidden rest when the source lies inside the cluster. Null: on all
   // that faces the direction.
@@ -31,6 +34,10 @@ struct SampledLinkOptions {
 // (metres), with directional irradiance, and leaf cells outside them.
 std::vector<ElementId> choose_receivers(const ElementTree& tree, std::vector<ElementId> below,
                                         const IdVector<ElementId, float>& largest_diameter);
+
+// Of the rays above, what a receiver takes.
+int rays_of(const ElementTree& tree, ElementId receiver, int rays,
+            const SampledLinkOptions& options);
 
 // A ray stops in a cell in proportion to the cell's opacity, by which radiosity is already reduced:
 // the weight is divided by it. In receiver order, each receiver's links in ray order:
