@@ -20,7 +20,7 @@ constexpr float kFar = 5.f;
 // Rays disagree when their visibilities spread by more than this.
 constexpr float kMixed = 0.1f;
 // Places of a triangle looked at, however few rays go there.
-constexpr int kLeastPlaces = 8;
+constexpr int kLeastPlaces = 8, kLeastPlacesInView = 3;  // in view: by solid angle and cosine
 // An emitter that gives this much of the light takes all rays, others in proportion.
 constexpr float kShareOfAllRays = 0.25f;
 // Distances from a group count from this much of its size.
@@ -255,7 +255,8 @@ Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3&
   Rgb seen_radiance(0.f);
   // Few rays each choose among several places in proportion to the kernel: where most light comes
   // from counts as it should, and none is lost by a place below the horizon.
-  const int candidates = std::max(1, kLeastPlaces / std::max(1, rays));
+  const int candidates =
+      std::max(1, (large ? kLeastPlacesInView : kLeastPlaces) / std::max(1, rays));
   const Vec2 choice_shift = other_shift(shift, emitter);
   const auto choose_one = [&](int ray) {
     float choice = r2_sequence(static_cast<std::uint32_t>(ray), choice_shift).x;
