@@ -4,14 +4,16 @@
     bench/view_times.py SCENE [NODE]     NODE: name of what is moved (default: the first)
 """
 
+import array
 import json
+import os
 import struct
 import subprocess
 import sys
 import time
 import urllib.request
 
-PROGRAM = "build/release/bin/halflight"
+PROGRAM = os.environ.get("HALFLIGHT", "build/release/bin/halflight")
 WATCHED = 3.0  # seconds after a move
 
 
@@ -33,12 +35,26 @@ class View:
         request = urllib.request.Request(self.url + "api/control", data=body, method="POST")
         urllib.request.urlopen(request, timeout=60).read()
 
+    def light(self):
+        packet = self.get("api/light?epoch=0&since=0")
+        length = struct.unpack("<I", packet[4:8])[0]
+        return json.loads(packet[8:8 + length]), packet[8 + length:]
+
     def wait(self, condition):
         while not condition(status := self.status()):
             if status["phase"] == "failed":
                 sys.exit(status["sentence"])
             time.sleep(0.002)
         return status
+
+
+def brightness(header, data):
+    """Square root of the irradiance at each vertex, about as bright as it looks."""
+    start, size = (header["arrays"]["light"][k] for k in ("offset", "count"))
+    values = array.array("I", data[start:start + 4 * size])
+    scale = header["scale"] / 3
+    return [(scale * ((v & 511) + (v >> 9 & 511) + (v >> 18 & 511)) * 2.0 ** ((v >> 27) - 24)) ** 0.5
+            for v in values]
 
 
 def main():
@@ -66,15 +82,22 @@ def main():
         print(f"'{wanted}' moved, seen in its old light  {time.monotonic() - begin:.3f} s")
         view.wait(lambda s: s["version"] > seen["version"] and s["iterations"] < before["iterations"])
         print(f"'{wanted}' moved, seen in new light      {time.monotonic() - begin:.3f} s")
-        means = []
+        frames = []
         while time.monotonic() - begin < WATCHED:
-            s = view.status()
-            means.append((time.monotonic() - begin, s["meanIrradiance"]))
-            time.sleep(0.02)
-        last = means[-1][1]
-        near = next(t for i, (t, _) in enumerate(means)
-                    if all(abs(m - last) < 0.1 * last for _, m in means[i:]))
-        print(f"mean irradiance within 10 % of what it is after {WATCHED:g} s from {near:.2f} s on")
+            header, packet = view.light()
+            if not frames or header["version"] > frames[-1][1]["version"]:
+                frames.append((time.monotonic() - begin, header, packet))
+            time.sleep(0.01)
+        epoch = frames[0][1]["epoch"]  # the sharp picture later has other vertices
+        frames = [(t, brightness(h, p)) for t, h, p in frames if h["epoch"] == epoch]
+        old, new = frames[0][1], frames[-1][1]
+        change = [b - a for a, b in zip(old, new)]
+        length = sum(c * c for c in change)
+        shares = [(t, sum((v - a) * c for v, a, c in zip(f, old, change)) / length) for t, f in frames]
+        for t, share in shares:
+            print(f"  {t:.2f} s: {100 * share:.0f} % of the change")
+        near = next(t for i, (t, _) in enumerate(shares) if all(0.9 < s < 1.1 for _, s in shares[i:]))
+        print(f"90 % of the change, and no more than 110 %, from {near:.2f} s on")
     finally:
         view.process.terminate()
         view.process.wait()

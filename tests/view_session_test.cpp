@@ -196,6 +196,24 @@ TEST(LiveView, SharpensThePictureVersionByVersion) {
   EXPECT_LT(s["firstLightSeconds"].get<double>(), s["wallSeconds"].get<double>());
 }
 
+// What is coarse comes first, with all its parts, and the rest grows out of it.
+TEST(LiveView, HasACompleteCoarseSolutionBeforeTheFineOne) {
+  Live live(room(), 0.03f);
+  ASSERT_TRUE(live.done());
+  const json records = json::parse(live.session.history(0))["records"];
+  std::size_t coarse_links = 0;  // when the first solution had its last rays
+  double coarse = 0.0, fine = 0.0;
+  for (const json& r : records) {
+    if (r["stage"] != "sample") continue;
+    if (coarse == 0.0) coarse = r["threshold"];
+    if (r["threshold"] == coarse) coarse_links = r["links"];
+    fine = r["threshold"];
+  }
+  EXPECT_GT(coarse, 2.0 * fine);
+  EXPECT_GT(coarse_links, 0u);
+  EXPECT_LT(5 * coarse_links, records.back()["links"].get<std::size_t>());
+}
+
 TEST(LiveView, DimsALampAsPhysicsSays) {
   Live live;
   ASSERT_TRUE(live.done());
