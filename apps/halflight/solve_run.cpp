@@ -76,6 +76,9 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
                          const Progress& progress, bool wants_error,
                          const std::function<void(const SolverState&)>& after_iteration) {
   SolveOutcome outcome;
+  // Whenever the time is over, all of the light shall be there. Rounds that memory cuts short are
+  // never made finer.
+  if (deadline.set() && state.history.empty() && state.options.memory == 0) begin_coarsely(state);
   const auto run = [&] {
     return run_schedule(state, goals, deadline, progress, after_iteration) &&
            state.schedule.short_of_memory == 0;
@@ -88,7 +91,8 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
   outcome.error = probes.measure(state);
   if (!goals.error) return outcome;
   // A solve that was resumed has some of its rounds behind it.
-  for (int round = std::max<int>(1, state.schedule.round);
+  const int coarse_rounds = deadline.set() ? 1 : 0;
+  for (int round = std::max<int>(1, state.schedule.round - coarse_rounds);
        outcome.goal_met && outcome.error->relative_rms > *goals.error; ++round) {
     if (round == kMostRounds) {
       outcome.goal_met = false;

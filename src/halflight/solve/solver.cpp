@@ -29,7 +29,9 @@ constexpr float kThresholdRatio = 4.f;  // between levels
 constexpr float kFeatureRatio = 2.f;    // of feature sizes
 // Of the first iteration to the first level, when iterations are to be short.
 constexpr float kFirstThreshold = 16.f;
-constexpr float kBlindCells = 8.f;  // RefineOptions::largest_blind_cell in feature sizes
+constexpr float kFirstError = 1.f;      // that a coarse beginning aims at
+constexpr double kShareOfCoarse = 0.1;  // of the work, roughly
+constexpr float kBlindCells = 8.f;      // RefineOptions::largest_blind_cell in feature sizes
 constexpr float kLeastTolerance = 0.15f;
 // Smaller errors take more rays for each receiver, in proportion; larger ones fewer.
 constexpr float kErrorOfPlainSampling = 0.05f;
@@ -126,7 +128,7 @@ void begin_level(SolverState& state) {
     if (state.options.importance) weigh_by_importance(state);
   }
   state.schedule.irradiance_threshold =
-      kThresholdPerError * state.options.error * mean *
+      kThresholdPerError * aimed_error(state) * mean *
       std::pow(kThresholdRatio, static_cast<float>(levels_left(state)));
 }
 
@@ -273,7 +275,7 @@ SampledLinkOptions sampled_link_options(const SolverState& state) {
   SampledLinkOptions options;
   options.inside = state.inside.get();
   const float more =
-      std::clamp(kErrorOfPlainSampling / state.options.error, kLeastSampling, kMostSampling);
+      std::clamp(kErrorOfPlainSampling / aimed_error(state), kLeastSampling, kMostSampling);
   options.rays_per_cell = static_cast<int>(more * static_cast<float>(options.rays_per_cell));
   options.rays_per_cluster = static_cast<int>(more * static_cast<float>(options.rays_per_cluster));
   options.area_of_all_rays = kAreaOfAllRays * state.tree[state.tree.root()].area;
@@ -297,6 +299,7 @@ void hand_over(SolverState& state, const std::vector<ElementId>& receivers) {
 // How far the schedule has got: most of the time goes into sampled links.
 double share_done(const SolverState& state) {
   const Schedule& todo = state.schedule;
+  if (todo.coarseness > 1.f) return todo.stage == Stage::sample ? kShareOfCoarse : 0.0;
   const bool samples = state.options.links == LinkMaker::sampled;
   const double of_refinement = samples ? 0.3 : 1.0;
   switch (todo.stage) {
@@ -441,6 +444,13 @@ void begin_stage(SolverState& state, bool in_short_iterations) {
   }
 }
 
+// For a smaller error than that of the links there are.
+void begin_finer_links(SolverState& state) {
+  state.schedule.irradiance_threshold = 0.f;
+  state.schedule.level = levels_of_links(state.options);
+  state.schedule.stage = state.options.links == LinkMaker::sampled ? Stage::shape : Stage::refine;
+}
+
 }  // namespace
 
 bool IterationBudget::limited() const { return std::isfinite(seconds) || links < kUnlimited; }
@@ -524,8 +534,13 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
   Sweeps swept;
   if (stage != Stage::shape)
     swept = sweep(state, budget.limited() ? kSweepsOfShortIteration : kMostSweeps);
-  if (todo.stage == Stage::converge && (swept.converged || !budget.limited()))
+  if (todo.stage == Stage::converge && (swept.converged || !budget.limited())) {
     todo.stage = Stage::done;
+    if (todo.coarseness > 1.f) {
+      todo.coarseness = 1.f;
+      begin_finer_links(state);
+    }
+  }
   record.sweeps = swept.count;
   record.sweep_seconds = seconds_since(start) - record.refine_seconds;
   state.costs.learn_sweeps(new_size, swept.count, record.sweep_seconds);
@@ -538,9 +553,15 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
 
 void aim_finer(SolverState& state, float factor) {
   state.options.error /= factor;
-  state.schedule.irradiance_threshold = 0.f;
-  state.schedule.level = levels_of_links(state.options);
-  state.schedule.stage = state.options.links == LinkMaker::sampled ? Stage::shape : Stage::refine;
+  begin_finer_links(state);
+}
+
+void begin_coarsely(SolverState& state) {
+  state.schedule.coarseness = std::max(1.f, kFirstError / state.options.error);
+}
+
+float aimed_error(const SolverState& state) {
+  return state.schedule.coarseness * state.options.error;
 }
 
 double least_iteration_seconds(const SolverState& state) {

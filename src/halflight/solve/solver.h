@@ -117,6 +117,11 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
 
 // Sets out for an error smaller by a factor above 1, once done: finer elements, more rays.
 void aim_finer(SolverState& state, float factor);
+// To be called before the first iteration: at first the solve aims at a coarse solution, complete
+// with its sampled links, out of which the one asked for grows. All in all that takes no longer.
+void begin_coarsely(SolverState& state);
+// The error that the links being made aim at.
+float aimed_error(const SolverState& state);
 
 // What the shortest iteration would take at least, as learnt so far.
 double least_iteration_seconds(const SolverState& state);

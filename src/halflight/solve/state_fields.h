@@ -30,6 +30,7 @@ void for_each_field(State& state, const Visit& visit) {
   visit("receivers to sample", state.schedule.receivers);
   visit("receivers in all", state.schedule.receiver_total);
   visit("round", state.schedule.round);
+  visit("coarseness", state.schedule.coarseness);
   visit("short of memory", state.schedule.short_of_memory);
 }
 

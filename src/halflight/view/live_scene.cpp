@@ -13,9 +13,6 @@
 namespace halflight {
 namespace {
 
-// A coarse solution in all its parts comes first, and the one that is wanted grows out of it.
-constexpr float kFirstError = 1.f;
-
 using LiveSides = IdVector<SideId, std::uint8_t>;
 
 // One primitive instance, whatever else the scene holds.
@@ -67,12 +64,12 @@ LiveSides live_sides_of(const SolverState& state) {
 void make_live_state(LiveScene& live, const std::shared_ptr<const Surfaces>& surfaces,
                      const LiveSides& sides, bool same_feature_size = false) {
   SolveOptions options = live.options;
-  options.error = std::max(kFirstError, options.error);
   // What a pilot has found out about this scene still holds after a move.
   if (same_feature_size && options.visibility == VisibilityMode::multires &&
       options.visibility_pilot && live.state->visibility->mode() == VisibilityMode::exact)
     options.visibility = VisibilityMode::exact;
   live.state.emplace(make_state(live.world, surfaces, sides, options));
+  begin_coarsely(*live.state);
   if (live.groups.empty()) return;
   set_groups(*live.state, live.groups);
   if (live.dimmed()) shine(*live.state, live.factors);

@@ -314,12 +314,7 @@ void ViewSession::iterate() {
                publishing_seconds_ / kPublishingShare);
   const bool idle_next = !may_advance();
   if (frames_since_restart_ < 2 || idle_next || waited > interval) publish_light();
-  const float wanted = live_.options.error;
-  if (state.done() && state.options.error > wanted) {
-    aim_finer(state, state.options.error / wanted);
-    state.options.error = wanted;
-  }
-  if (!state.done() && !may_advance()) set_phase(paused_ ? Phase::paused : Phase::limited);
+  if (idle_next && !state.done()) set_phase(paused_ ? Phase::paused : Phase::limited);
   publish_status();
 }
 
