@@ -71,8 +71,9 @@ def is_png(data):
 
 
 def is_table(data):
-    rows = [[float(word) for word in line.split()] for line in data.decode().splitlines()]
-    return len(rows) == SENSORS and all(
+    lines = data.decode().split("\n")
+    rows = [[float(word) for word in line.split()] for line in lines[:-1]]
+    return not lines[-1] and len(rows) == SENSORS and all(
         len(row) == 9 and all(math.isfinite(x) for x in row) and min(row[6:]) >= 0 for row in rows)
 
 

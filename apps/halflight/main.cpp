@@ -52,8 +52,8 @@ int fail(const std::exception& e) {
 [[noreturn]] void on_terminate() {
   try {
     if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
-  } catch (const std::logic_error&) {
-    std::abort();
+  } catch (const std::logic_error& e) {
+    std::fprintf(stderr, "halflight: internal error: %s (please report it)\n", e.what());
   } catch (const std::exception& e) {
     std::_Exit(fail(e));
   }
@@ -83,6 +83,8 @@ int main(int argc, char** argv) {
   int status = kGoalMet;
   try {
     status = run(argc, argv);
+  } catch (const std::logic_error&) {
+    throw;
   } catch (const std::exception& e) {
     status = fail(e);
   }
