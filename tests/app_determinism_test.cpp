@@ -14,8 +14,9 @@ namespace fs = std::filesystem;
 
 struct DeterminismCase {
   const char* name;
-  std::string make;         // the command that writes the scene as scene.glb; empty: room.obj
-  std::string solve;        // options
+  std::string make;   // the command that writes the scene as scene.glb; empty: room.obj
+  std::string solve;  // options
+  int interruptions = 3;
   const char* shared = "";  // instead of both: a scene of the shared corpus
 };
 
@@ -126,11 +127,11 @@ TEST_P(CommandDeterminism, InterruptedAndResumedIsTheSame) {
   const auto took = std::chrono::steady_clock::now() - start;
   const auto whole = outputs("whole", false);
   int interrupted = 0;
-  for (const int eighth : {1, 3, 5}) {
-    interrupted +=
-        run_and_signal(solve("part", 1), SIGINT,
-                       std::chrono::duration_cast<std::chrono::milliseconds>(took * eighth / 8)) ==
-        3;
+  const int times = GetParam().interruptions;
+  for (int i = 0; i < times; ++i) {
+    interrupted += run_and_signal(solve("part", 1), SIGINT,
+                                  std::chrono::duration_cast<std::chrono::milliseconds>(
+                                      took * (2 * i + 1) / (2 * times))) == 3;
     expect_light(solve("part", 2) + " --resume");
     expect_same(whole, "part", false);
     for (const auto& file : whole) fs::remove(path("part") / file.first);
@@ -141,7 +142,7 @@ TEST_P(CommandDeterminism, InterruptedAndResumedIsTheSame) {
 INSTANTIATE_TEST_SUITE_P(
     Scenes, CommandDeterminism,
     ::testing::Values(
-        DeterminismCase{"RoomSampled", "", "--feature-size 40cm --links sampled --error 20%"},
+        DeterminismCase{"RoomSampled", "", "--feature-size 40cm --links sampled --error 20%", 16},
         DeterminismCase{"BoxSampled", "scene cornell-box -o scene.glb",
                         "--feature-size 8cm --links sampled --error 20%"},
         DeterminismCase{"CrowdRefined", "scene loose-triangles --count 300 -o scene.glb",
@@ -149,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(
         DeterminismCase{"CrowdSampled", "scene loose-triangles --count 300 -o scene.glb",
                         "--feature-size 20cm --links sampled --error 20% --visibility multires"},
         DeterminismCase{"SharedBoxRefined", "", "--feature-size 30cm --links refined --error 20%",
-                        "cornell-box/CornellBox-Original.obj"},
+                        3, "cornell-box/CornellBox-Original.obj"},
         DeterminismCase{"RoomInLittleMemory", "", "--feature-size 1cm --error 5% --memory 46MiB"}),
     [](const auto& test) { return std::string(test.param.name); });
 

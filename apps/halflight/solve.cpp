@@ -181,13 +181,17 @@ Result<int> run(const SolveCommand& command) {
   const SolveOutcome outcome = run_to_goal(state, plan->goals, deadline, progress,
                                            !command.outputs.report.empty(), after_iteration);
   report.end_phase("solve", phase);
+  // Taking the light apart undoes the balance of the groups that refinement goes on with.
+  Result<void> written;
+  const bool complete = state.done() && !progress.cancelled();
+  if (!complete) written = saver.end(state);
   if (!state.grouped.groups.empty() && !state.grouped.separated()) {
     phase = std::chrono::steady_clock::now();
     separate(state, progress);
     report.end_phase("light groups", phase);
   }
+  if (complete) written = saver.end(state);
   // What cannot be written keeps nothing else from being written.
-  Result<void> written = saver.end(state);
   const auto also = [&](const Result<void>& result) {
     if (!written && !result) warn(result.error().line());
     if (written) written = result;
