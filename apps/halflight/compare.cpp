@@ -15,6 +15,7 @@
 #include "halflight/base/parallel.h"
 #include "halflight/features/feature_mask.h"
 #include "halflight/features/shadow_estimate.h"
+#include "halflight/io/atomic_file.h"
 #include "halflight/io/image_read.h"
 #include "halflight/io/image_write.h"
 
@@ -99,8 +100,10 @@ Result<Rectangle> parse_part(const std::string& text, const Image& picture) {
 
 Result<void> check_names(const CompareFiles& files) {
   for (const auto* path : {&files.mask, &files.difference, &files.false_colour})
-    if (!path->empty())
+    if (!path->empty()) {
       if (auto known = check_image_name(*path); !known) return known;
+      if (auto ok = check_writable(*path); !ok) return ok;
+    }
   return {};
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "halflight/io/atomic_file.h"
 #include "halflight/io/image_write.h"
 #include "halflight/io/write_gltf.h"
 #include "halflight/output/bake_lightmap.h"
@@ -64,9 +65,10 @@ void add_lit_arguments(CLI::App& command, LitArguments& arguments) {
 }
 
 Result<void> check(const LitArguments& arguments) {
-  if (!arguments.lightmap) return {};
-  const auto size = lightmap_size(*arguments.lightmap);
-  return size ? Result<void>() : tl::unexpected(size.error());
+  if (arguments.lightmap)
+    if (const auto size = lightmap_size(*arguments.lightmap); !size)
+      return tl::unexpected(size.error());
+  return check_writable(arguments.path);
 }
 
 std::size_t least_memory(const LitArguments& arguments, std::size_t vertices) {

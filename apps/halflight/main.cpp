@@ -1,9 +1,73 @@
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <stdexcept>
 #include <string>
 
 #include "commands.h"
+#include "halflight/base/parallel.h"
 
 namespace halflight::app {
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App cli{"Lights diffuse 3-D scenes without noise.", "halflight"};
+  cli.set_version_flag("--version", HALFLIGHT_VERSION);
+  cli.require_subcommand(1);
+  cli.failure_message([](const CLI::App*, const CLI::Error& e) {
+    return std::string("halflight: ") + e.what() + " (--help lists what there is)\n";
+  });
+  int status = kGoalMet;
+  add_solve(cli, status);
+  add_sample(cli, status);
+  add_mix(cli, status);
+  add_render(cli, status);
+  add_view(cli, status);
+  add_inspect(cli, status);
+  add_scene(cli, status);
+  add_reference(cli, status);
+  add_compare(cli, status);
+  add_reproduce(cli, status);
+  set_thread_count(0);
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return cli.exit(e) == 0 ? kGoalMet : kBadInput;
+  }
+  return status;
+}
+
+// What is thrown when the machine has no more to give. Makes no strings: there may be no memory.
+int fail(const std::exception& e) {
+  const bool memory = dynamic_cast<const std::bad_alloc*>(&e) != nullptr;
+  std::fprintf(stderr, "halflight: %s (%s)\n", memory ? "there is not enough memory" : e.what(),
+               memory ? "light more coarsely, with a larger --feature-size, or lift the limit"
+                      : "lift the limits on memory and threads, or give --threads 1");
+  return kSystemFailure;
+}
+
+// The same from where nothing may be thrown, as inside oneTBB. Anything else is a bug, and aborts.
+[[noreturn]] void on_terminate() {
+  try {
+    if (const auto thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::logic_error& e) {
+    std::fprintf(stderr, "halflight: internal error: %s (please report it)\n", e.what());
+  } catch (const std::exception& e) {
+    std::_Exit(fail(e));
+  }
+  std::abort();
+}
+
+int flush_output(int status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  std::fputs("halflight: the standard output cannot be written to (check that there is room)\n",
+             stderr);
+  return kSystemFailure;
+}
+
+}  // namespace
 
 int fail(const Error& error) {
   std::fprintf(stderr, "halflight: %s\n", error.line().c_str());
@@ -13,27 +77,16 @@ int fail(const Error& error) {
 }  // namespace halflight::app
 
 int main(int argc, char** argv) {
-  CLI::App cli{"Lights diffuse 3-D scenes without noise.", "halflight"};
-  cli.set_version_flag("--version", HALFLIGHT_VERSION);
-  cli.require_subcommand(1);
-  cli.failure_message([](const CLI::App*, const CLI::Error& e) {
-    return std::string("halflight: ") + e.what() + " (--help lists what there is)\n";
-  });
-  int status = halflight::app::kGoalMet;
-  halflight::app::add_solve(cli, status);
-  halflight::app::add_sample(cli, status);
-  halflight::app::add_mix(cli, status);
-  halflight::app::add_render(cli, status);
-  halflight::app::add_view(cli, status);
-  halflight::app::add_inspect(cli, status);
-  halflight::app::add_scene(cli, status);
-  halflight::app::add_reference(cli, status);
-  halflight::app::add_compare(cli, status);
-  halflight::app::add_reproduce(cli, status);
+  using namespace halflight::app;
+  std::set_terminate(on_terminate);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of writing
+  int status = kGoalMet;
   try {
-    cli.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return cli.exit(e) == 0 ? halflight::app::kGoalMet : halflight::app::kBadInput;
+    status = run(argc, argv);
+  } catch (const std::logic_error&) {
+    throw;
+  } catch (const std::exception& e) {
+    status = fail(e);
   }
-  return status;
+  return flush_output(status);
 }

@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "halflight/base/parallel.h"
+#include "halflight/io/atomic_file.h"
 #include "halflight/io/sensors.h"
 #include "halflight/rays/reference_sensors.h"
 #include "scene_arguments.h"
@@ -62,6 +63,7 @@ void report_bias(const TimedEstimates& tried, const TimedEstimates& reference) {
 Result<void> reference(const ReferenceArguments& arguments) {
   const auto sensors = read_sensors(arguments.points);
   if (!sensors) return tl::unexpected(sensors.error());
+  if (auto ok = check_writable(arguments.points_out); !ok) return ok;
   Result<Scene> scene = load(arguments.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);

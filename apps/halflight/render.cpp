@@ -7,6 +7,7 @@
 #include "checkpoint_arguments.h"
 #include "commands.h"
 #include "halflight/base/parallel.h"
+#include "halflight/io/atomic_file.h"
 #include "halflight/io/image_write.h"
 #include "halflight/output/lit_mesh.h"
 #include "halflight/output/solution_image.h"
@@ -36,8 +37,9 @@ struct RenderArguments {
 
 Result<void> check(const RenderArguments& arguments) {
   if (auto ok = check(arguments.view); !ok) return ok;
-  if (!arguments.visibility_output.empty()) return check_image_name(arguments.visibility_output);
-  return {};
+  if (arguments.visibility_output.empty()) return {};
+  if (auto known = check_image_name(arguments.visibility_output); !known) return known;
+  return check_writable(arguments.visibility_output);
 }
 
 // The scene of a checkpoint and the light in it are what they are.

@@ -4,6 +4,7 @@
 
 #include "halflight/base/parallel.h"
 #include "halflight/base/quantities.h"
+#include "halflight/io/atomic_file.h"
 #include "halflight/output/read_light.h"
 #include "halflight/rays/sensor_placement.h"
 
@@ -46,6 +47,7 @@ Result<std::vector<Sensor>> read_sensors(const SensorArguments& arguments) {
   if (const auto rays = resolve_gather_rays(arguments.final_gather); !rays)
     return tl::unexpected(rays.error());
   if (arguments.points.empty()) return std::vector<Sensor>();
+  if (auto ok = check_writable(arguments.points_out); !ok) return tl::unexpected(ok.error());
   return halflight::read_sensors(arguments.points);
 }
 

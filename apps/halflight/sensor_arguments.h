@@ -23,7 +23,8 @@ struct SensorArguments {
 // Returns the option --points. `arguments` must live until the command has run.
 CLI::Option* add_sensor_arguments(CLI::App& command, SensorArguments& arguments);
 
-// None without --points. Errors: --final-gather is no number; what is wrong with the file.
+// None without --points. Errors: --final-gather is no number; what is wrong with the file,
+// or with the place to write to.
 Result<std::vector<Sensor>> read_sensors(const SensorArguments& arguments);
 
 // Writes the irradiance at the sensors.

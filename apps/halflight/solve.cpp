@@ -147,6 +147,7 @@ Result<int> run(const SolveCommand& command) {
   if (auto ok = check(command.outputs.lit); !ok) return tl::unexpected(ok.error());
   const auto sensors = read_sensors(command.outputs.sensors);
   if (!sensors) return tl::unexpected(sensors.error());
+  if (auto ok = check_writable(command.outputs.report); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_file_size(command.scene.path, plan->options.memory); !ok)
     return tl::unexpected(ok.error());
   Result<Scene> scene = load(command.scene);
@@ -180,35 +181,39 @@ Result<int> run(const SolveCommand& command) {
   const SolveOutcome outcome = run_to_goal(state, plan->goals, deadline, progress,
                                            !command.outputs.report.empty(), after_iteration);
   report.end_phase("solve", phase);
+  // Taking the light apart undoes the balance of the groups that refinement goes on with.
+  Result<void> written;
+  const bool complete = state.done() && !progress.cancelled();
+  if (!complete) written = saver.end(state);
   if (!state.grouped.groups.empty() && !state.grouped.separated()) {
     phase = std::chrono::steady_clock::now();
     separate(state, progress);
     report.end_phase("light groups", phase);
   }
-  const auto saved = saver.end(state);
+  if (complete) written = saver.end(state);
+  // What cannot be written keeps nothing else from being written.
+  const auto also = [&](const Result<void>& result) {
+    if (!written && !result) warn(result.error().line());
+    if (written) written = result;
+  };
   if (state.options.memory > 0) drop_links(state);
 
   if (!sensors->empty()) {
     phase = std::chrono::steady_clock::now();
-    auto written = write_irradiance(command.outputs.sensors, state, *sensors);
-    if (!written) return tl::unexpected(written.error());
+    also(write_irradiance(command.outputs.sensors, state, *sensors));
     report.end_phase("sensors", phase);
   }
-  if (!command.outputs.lit.path.empty()) {
-    auto written = write_lit(command.outputs.lit, state, report, progress);
-    if (!written) return tl::unexpected(written.error());
-  }
+  if (!command.outputs.lit.path.empty())
+    also(write_lit(command.outputs.lit, state, report, progress));
   // Cancelled, iterations and the mesh end early: what is written is valid, and coarser.
   const int status = interruptible.interrupted()                 ? kInterrupted
                      : progress.cancelled() || !outcome.goal_met ? kBudgetEnded
                                                                  : kGoalMet;
   report.set_memory_limit(state.options.memory);
   if (outcome.error) report.set_estimated_error(*outcome.error);
-  if (!command.outputs.report.empty()) {
-    auto written = write_text_atomically(command.outputs.report, report.json(state));
-    if (!written) return tl::unexpected(written.error());
-  }
-  if (!saved) return tl::unexpected(saved.error());
+  if (!command.outputs.report.empty())
+    also(write_text_atomically(command.outputs.report, report.json(state)));
+  if (!written) return tl::unexpected(written.error());
   return status;
 }
 

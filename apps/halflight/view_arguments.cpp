@@ -9,6 +9,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "halflight/io/atomic_file.h"
 #include "halflight/io/image_write.h"
 #include "halflight/output/choose_view.h"
 
@@ -92,7 +93,8 @@ Result<void> check(const ViewArguments& arguments) {
   if (!arguments.size.empty())
     if (const auto size = to_size(arguments.size); !size) return tl::unexpected(size.error());
   if (const auto ev = to_ev(arguments.exposure, Image()); !ev) return tl::unexpected(ev.error());
-  return check_image_name(arguments.output);
+  if (auto known = check_image_name(arguments.output); !known) return known;
+  return check_writable(arguments.output);
 }
 
 Result<View> choose_view(const ViewArguments& arguments, const Scene& scene,

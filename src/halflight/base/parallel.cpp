@@ -1,11 +1,13 @@
 #include "halflight/base/parallel.h"
 
-#include <memory>
+#include <algorithm>
 #include <thread>
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+
+#include "halflight/base/threads.h"
 
 #ifdef HALFLIGHT_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
@@ -14,8 +16,17 @@
 namespace halflight {
 namespace {
 
-std::unique_ptr<tbb::global_control> g_thread_limit;
+// Never given back: oneTBB would start all its threads as the program ends.
+tbb::global_control* g_thread_limit = nullptr;
 int g_thread_count = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+
+// oneTBB ends the program when it cannot start a thread, so it is told of no more than there are.
+// Some are left for others: deadlines, the live view.
+int threads_within(int wanted) {
+  constexpr int kSpare = 2;
+  const int others = startable_threads(wanted - 1 + kSpare);
+  return others == wanted - 1 + kSpare ? wanted : std::max(1, 1 + others - kSpare);
+}
 
 // oneTBB is not instrumented, so the thread sanitizer cannot see that a loop's bodies run after the
 // loop is entered and before it is left. These two say so; in other builds they do nothing.
@@ -31,9 +42,11 @@ void tell_sanitizer_after(void*) {}
 
 void set_thread_count(int n) {
   const int all = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  g_thread_count = n > 0 ? n : all;
-  g_thread_limit = std::make_unique<tbb::global_control>(
-      tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(g_thread_count));
+  g_thread_count = threads_within(n > 0 ? n : all);
+  const tbb::global_control* before = g_thread_limit;
+  g_thread_limit = new tbb::global_control(tbb::global_control::max_allowed_parallelism,
+                                           static_cast<std::size_t>(g_thread_count));
+  delete before;
 }
 
 int thread_count() { return g_thread_count; }

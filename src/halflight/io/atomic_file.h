@@ -16,6 +16,9 @@ namespace halflight {
 Result<void> write_file_atomically(const std::filesystem::path& path,
                                    std::span<const std::byte> bytes);
 
+// Tells before any work is done that a file could not be written; an empty path is no file.
+Result<void> check_writable(const std::filesystem::path& path);
+
 inline Result<void> write_text_atomically(const std::filesystem::path& path,
                                           std::string_view text) {
   return write_file_atomically(path, std::as_bytes(std::span(text.data(), text.size())));

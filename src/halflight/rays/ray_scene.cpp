@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
+#include <stdexcept>
 #include <string>
 
 #include <embree3/rtcore.h>
@@ -64,6 +66,17 @@ struct RayScene::Impl {
     if (device) rtcReleaseDevice(device);
   }
 
+  // Embree answers with nothing where it lacks memory, and may end the program when it is to take
+  // apart what it could not finish: that is left behind.
+  void check() {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_NONE && device != nullptr) return;
+    scene = nullptr;
+    device = nullptr;
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error("Embree fails with its error " + std::to_string(error));
+  }
+
   void attach(unsigned which) {
     RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     const auto& ids = triangles[which];
@@ -72,6 +85,7 @@ struct RayScene::Impl {
                                geometry->positions.size());
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), ids.size()));
+    check();
     for (std::size_t i = 0; i < ids.size(); ++i)
       for (int k = 0; k < 3; ++k) indices[3 * i + k] = geometry->triangles[ids[i]][k].value;
     if (which == 1) {
@@ -144,11 +158,14 @@ RayScene::RayScene(const Scene& scene, const Geometry& geometry) : impl_(std::ma
     impl_->triangles[may_be_transparent(scene.materials[geometry.materials[t]])].push_back(t);
   }
   impl_->device = rtcNewDevice((std::string("isa=") + kInstructionSet).c_str());
+  impl_->check();
   impl_->scene = rtcNewScene(impl_->device);
+  impl_->check();
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   for (unsigned which = 0; which < 2; ++which)
     if (!impl_->triangles[which].empty()) impl_->attach(which);
   rtcCommitScene(impl_->scene);
+  impl_->check();
 
   const Vec3 farthest = geometry.triangles.empty() ? Vec3(1.f)
                                                    : glm::max(glm::abs(geometry.bounds.lower),

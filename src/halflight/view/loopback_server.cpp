@@ -22,6 +22,8 @@
 #include <fmt/format.h>
 #include <httplib.h>
 
+#include "halflight/base/threads.h"
+
 namespace halflight {
 namespace {
 
@@ -31,6 +33,7 @@ constexpr const char* kLoopback = "127.0.0.1";
 constexpr int kMostRequests = 1000;      // of one connection
 constexpr int kPollMilliseconds = 100;   // between looks at whether the server stops
 constexpr double kLongestReply = 120.0;  // seconds; streams of events end by themselves
+constexpr int kSpareThreads = 3;         // besides one for each connection: who listens, sharpens
 
 // Nothing but what the page brings along may run in it or be asked by it.
 constexpr const char* kContentPolicy =
@@ -361,6 +364,11 @@ LoopbackServer::~LoopbackServer() = default;
 Result<std::unique_ptr<LoopbackServer>> LoopbackServer::start(int port, const std::string& token,
                                                               Handler handler,
                                                               const WebLimits& limits) {
+  // The library ends the program where it cannot start all of its threads.
+  const int threads = static_cast<int>(limits.connections) + kSpareThreads;
+  if (startable_threads(threads) < threads)
+    return system_error(fmt::format("the system does not let us start {} threads", threads),
+                        kLoopback, "lift its limit on processes or threads");
   auto impl = std::make_unique<Impl>(token, std::move(handler), limits);
   if (!impl->open_port(port))
     return system_error(
