@@ -13,10 +13,6 @@
 
 namespace halflight {
 
-// A picture above this size is refused before memory is taken (16384 x 8192: 0.5 GB): a flat PNG
-// of a few kilobytes can claim any size.
-inline constexpr std::size_t kMaxTexels = std::size_t{1} << 27;
-
 struct Image8 {
   int width = 0;
   int height = 0;
