@@ -23,8 +23,8 @@ TEST(OneLine, IsCutBetweenCharacters) {
   EXPECT_EQ(one_line("\x80\x80\x80", 1), "...");
 }
 
-TEST(OneLine, ErrorsKeepTheirRemedy) {
-  const Error error = one_line(Error{"no\nsuch", "a\rb", "mend it", Error::Kind::system});
+TEST(OneLine, TakesAllOfAnError) {
+  const Error error = one_line(Error{"no\nsuch", "a\rb", "mend\tit", Error::Kind::system});
   EXPECT_EQ(error.line(), "a b: no such (mend it)");
   EXPECT_EQ(error.kind, Error::Kind::system);
 }

@@ -31,6 +31,7 @@ inline Error one_line(Error error) {
   constexpr std::size_t kLongestPlace = 1000;
   error.what = one_line(error.what);
   error.where = one_line(error.where, kLongestPlace);
+  error.remedy = one_line(error.remedy);
   return error;
 }
 

@@ -144,10 +144,8 @@ void SectionWriter::add_bytes(std::string_view name, std::span<const std::byte> 
 }
 
 Bytes SectionWriter::bytes() const {
-  Bytes file;
-  file.reserve(kHeader + body_.size());
   const std::uint64_t length = kHeader + body_.size();
-  append(file, kCheckpointMagic);
+  Bytes file(kCheckpointMagic.begin(), kCheckpointMagic.end());
   append(file, kCheckpointVersion);
   append(file, sections_);
   append(file, length);
