@@ -144,13 +144,15 @@ void SectionWriter::add_bytes(std::string_view name, std::span<const std::byte> 
 }
 
 Bytes SectionWriter::bytes() const {
+  Bytes header;
   const std::uint64_t length = kHeader + body_.size();
-  Bytes file(kCheckpointMagic.begin(), kCheckpointMagic.end());
-  append(file, kCheckpointVersion);
-  append(file, sections_);
-  append(file, length);
-  append(file, header_checksum(sections_, length));
-  file.insert(file.end(), body_.begin(), body_.end());
+  append(header, kCheckpointMagic);
+  append(header, kCheckpointVersion);
+  append(header, sections_);
+  append(header, length);
+  append(header, header_checksum(sections_, length));
+  Bytes file(length);
+  std::copy(body_.begin(), body_.end(), std::copy(header.begin(), header.end(), file.begin()));
   return file;
 }
 

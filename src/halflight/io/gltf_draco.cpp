@@ -18,23 +18,21 @@ std::unique_ptr<draco::Mesh> decode(ByteSpan data, const JsonCursor& extension) 
   return std::move(mesh).value();
 }
 
-// One value per point; normalized integers become fractions of their largest value. Whether they
-// are is for the accessor to say: Draco's decoder takes any byte of its data for a bool.
-template <class Vector>
-std::vector<Vector> read_attribute(draco::Mesh& mesh, const JsonCursor& id, bool normalized) {
-  const int index = mesh.GetAttributeIdByUniqueId(
+// One value per point; normalized integers become fractions of their largest value.
+template <class Vector, int N>
+std::vector<Vector> read_attribute(const draco::Mesh& mesh, const JsonCursor& id) {
+  const auto* attribute = mesh.GetAttributeByUniqueId(
       static_cast<std::uint32_t>(id.index_below(1u << 31, "attribute")));
-  if (index < 0) id.fail("the Draco data have no such attribute");
-  draco::PointAttribute* attribute = mesh.attribute(index);
-  attribute->set_normalized(normalized);
-  constexpr int kComponents = Vector::length();
-  if (attribute->num_components() != kComponents)
-    id.fail("the attribute should have " + std::to_string(kComponents) + " components");
+  if (!attribute) id.fail("the Draco data have no such attribute");
+  // glTF has none, and Draco's reader takes any byte for one.
+  if (attribute->data_type() == draco::DT_BOOL) id.fail("the attribute holds no numbers");
+  if (attribute->num_components() != N)
+    id.fail("the attribute should have " + std::to_string(N) + " components");
   std::vector<Vector> values(mesh.num_points());
   for (draco::PointIndex i(0); i < mesh.num_points(); ++i) {
     const draco::AttributeValueIndex value = attribute->mapped_index(i);
     if (value.value() >= attribute->size() ||
-        !attribute->ConvertValue<float, kComponents>(value, &values[i.value()][0]))
+        !attribute->ConvertValue<float, N>(value, &values[i.value()][0]))
       id.fail("the Draco attribute is broken");
   }
   return values;
@@ -49,17 +47,10 @@ void read_draco(GltfDocument& document, const JsonCursor& json, const JsonCursor
   const ByteSpan data = document.buffer_view(extension.at("bufferView"));
   const std::unique_ptr<draco::Mesh> mesh = decode(data, extension);
   const JsonCursor ids = extension.at("attributes");
-  const auto normalized = [&](std::string_view name) {
-    const auto accessor = json.at("attributes").find(name);
-    return accessor && document.element("accessors", *accessor).boolean_or("normalized", false);
-  };
-  const auto read = [&]<class Vector>(std::string_view name, std::vector<Vector>& to) {
-    if (const auto id = ids.find(name)) to = read_attribute<Vector>(*mesh, *id, normalized(name));
-  };
-  p.positions = read_attribute<Vec3>(*mesh, ids.at("POSITION"), normalized("POSITION"));
-  read("NORMAL", p.normals);
-  read("TEXCOORD_0", p.uvs[0]);
-  read("TEXCOORD_1", p.uvs[1]);
+  p.positions = read_attribute<Vec3, 3>(*mesh, ids.at("POSITION"));
+  if (const auto id = ids.find("NORMAL")) p.normals = read_attribute<Vec3, 3>(*mesh, *id);
+  if (const auto id = ids.find("TEXCOORD_0")) p.uvs[0] = read_attribute<Vec2, 2>(*mesh, *id);
+  if (const auto id = ids.find("TEXCOORD_1")) p.uvs[1] = read_attribute<Vec2, 2>(*mesh, *id);
   p.triangles.resize(mesh->num_faces());
   for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f)
     for (int k = 0; k < 3; ++k) {
