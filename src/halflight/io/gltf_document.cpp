@@ -27,8 +27,8 @@ bool is_glb(ByteSpan bytes, const std::filesystem::path& path) {
 
 }  // namespace
 
-GltfDocument::GltfDocument(Bytes file, const std::filesystem::path& path)
-    : path_(path), file_(std::move(file)) {
+GltfDocument::GltfDocument(Bytes file, std::filesystem::path path)
+    : path_(std::move(path)), file_(std::move(file)) {
   if (is_glb(file_, path_))
     split_glb();
   else

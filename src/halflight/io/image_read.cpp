@@ -14,6 +14,7 @@
 #include <png.h>
 
 #include "halflight/base/one_line.h"
+#include "halflight/io/image_reader.h"
 #include "halflight/io/scene_limits.h"
 
 namespace halflight {
@@ -38,6 +39,7 @@ tl::unexpected<Error> png_failure(const png_image& png, const std::string& where
 
 // libpng decodes 16-bit files to linear light and 8-bit files to sRGB, as they come.
 Result<Image> decode_png_values(const Bytes& bytes, PngValues values, const std::string& where) {
+  if (auto fits = check_png_chunks(bytes, where); !fits) return tl::unexpected(fits.error());
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   const std::unique_ptr<png_image, FreePng> free_on_return(&png);

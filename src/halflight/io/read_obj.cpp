@@ -29,8 +29,8 @@ std::uint32_t resolve(std::string_view word, const std::vector<T>& items) {
 
 class ObjReader {
  public:
-  ObjReader(Bytes text, const std::filesystem::path& path)
-      : path_(path), text_(std::move(text)), materials_(scene_, warnings_) {}
+  ObjReader(Bytes text, std::filesystem::path path)
+      : path_(std::move(path)), text_(std::move(text)), materials_(scene_, warnings_) {}
 
   Scene read() {
     check_encoding();
