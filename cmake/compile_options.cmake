@@ -13,6 +13,15 @@ if(HALFLIGHT_SANITIZE)
     -fsanitize=${HALFLIGHT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(halflight_options INTERFACE -fsanitize=${HALFLIGHT_SANITIZE})
 endif()
+if(HALFLIGHT_FUZZ)
+  set(halflight_fuzz_sanitizers address,undefined,float-cast-overflow)
+  target_compile_options(halflight_options INTERFACE
+    -fsanitize=fuzzer-no-link,${halflight_fuzz_sanitizers} -fno-sanitize-recover=all
+    -fno-omit-frame-pointer)
+  target_link_options(halflight_options INTERFACE -fsanitize=${halflight_fuzz_sanitizers})
+  target_compile_definitions(halflight_options INTERFACE
+    FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION _GLIBCXX_ASSERTIONS)
+endif()
 if(HALFLIGHT_COVERAGE)
   target_compile_options(halflight_options INTERFACE --coverage)
   target_link_options(halflight_options INTERFACE --coverage)

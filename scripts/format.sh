@@ -6,7 +6,7 @@ mode=(-i)
 [ "${1:-}" != --check ] || mode=(--dry-run -Werror)
 
 folders=()
-for folder in src apps tests bench experiments; do
+for folder in src apps tests fuzz bench experiments; do
   [ ! -d "$folder" ] || folders+=("$folder")
 done
 find "${folders[@]}" -name node_modules -prune -o \( -name '*.h' -o -name '*.cpp' \) -print0 |

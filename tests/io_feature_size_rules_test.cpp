@@ -39,12 +39,27 @@ TEST_F(FeatureSizeRules, NonsenseIsNamedWithItsLine) {
            {"[[rule]]\nmaterial = 4\nfeature-size = 1\n", "line 2"},
            {"[[rule]]\nmaterail = \"a\"\nfeature-size = 1\n", "materail"},
            {"[[rule\n", "line 1"},
+           {"# \xc3\xa9\nna\xc3\xafve = 1\n", "line 2"},
+           {"[[rule]]\nmaterial = \xc3\xa9\n", "line 2"},
            {"\xff\xfe", "line 1"}}) {
     const auto rules = read(text);
     ASSERT_FALSE(rules) << text;
     EXPECT_NE(rules.error().line().find(what), std::string::npos) << rules.error().line();
     EXPECT_NE(rules.error().line().find("rules.toml"), std::string::npos) << rules.error().line();
   }
+}
+
+// Tables in tables end by recursion, and the stack has an end.
+TEST_F(FeatureSizeRules, DeepKeysAreRefused) {
+  std::string key = "a";
+  for (int i = 0; i < 300'000; ++i) key += ".a";
+  for (const std::string& text : {key + " = 1\n", "\n[" + key + "]\n", "x = {" + key + " = 1}\n"}) {
+    const auto rules = read(text);
+    ASSERT_FALSE(rules);
+    EXPECT_NE(rules.error().what.find("too many dots"), std::string::npos) << rules.error().line();
+  }
+  EXPECT_TRUE(read("[[rule]] # " + std::string(100, '.') +
+                   "\nmaterial = \"Wood.001\"\nfeature-size = 0.5\n"));
 }
 
 TEST_F(FeatureSizeRules, MissingFileIsAnError) {

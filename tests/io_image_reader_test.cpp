@@ -95,6 +95,16 @@ TEST(ImageReader, APictureThatClaimsToBeHugeIsRefusedUnread) {
   EXPECT_THAT(image.error().line(), testing::HasSubstr("bomb.png: the picture has 60000 x 60000"));
 }
 
+// libpng would take as much memory as the chunk claims.
+TEST(ImageReader, AChunkThatClaimsToBeHugeIsRefusedUnread) {
+  Bytes bytes = encode_png(1, 1, {{1, 2, 3, 4}});
+  const Bytes chunk{0x45, 0x4e, 0x44, 0x04, 'z', 'T', 'X', 't'};
+  bytes.insert(bytes.begin() + 33, chunk.begin(), chunk.end());  // behind the header
+  const Result<Image8> image = decode_image(bytes, "bomb.png");
+  ASSERT_FALSE(image);
+  EXPECT_THAT(image.error().line(), testing::HasSubstr("ends inside a chunk"));
+}
+
 TEST(ImageReader, CutOffPicturesAreRefusedOrPartlyRead) {
   const Bytes png = encode_png(2, 2, std::vector<Texel>(4, {10, 20, 30, 255}));
   const Bytes jpeg = encode_jpeg(8, 8, Bytes(8 * 8 * 3, 77));

@@ -13,6 +13,8 @@ using Json = nlohmann::json;
 
 constexpr double kDefaultFov = 45.0;  // degrees
 constexpr int kLargestSide = 32768;   // pixels
+// Squares of lengths in between are neither 0 nor infinite in single precision.
+constexpr float kShortest = 1e-15f, kLongest = 1e15f;
 
 std::optional<Vec3> vector_at(const Json& object, const char* key) {
   const auto found = object.find(key);
@@ -23,7 +25,7 @@ std::optional<Vec3> vector_at(const Json& object, const char* key) {
     if (!number.is_number()) return std::nullopt;
     v[k] = number.get<float>();
   }
-  return is_finite(v) ? std::optional(v) : std::nullopt;
+  return max_component(glm::abs(v)) <= kLongest ? std::optional(v) : std::nullopt;
 }
 
 int size_at(const Json& object, const char* key) {
@@ -37,7 +39,7 @@ Result<PlacedCamera> to_camera(const Json& object, const Mat4& to_world, const s
   const auto position = vector_at(object, "position"), target = vector_at(object, "target");
   auto forward = vector_at(object, "forward");
   if (position && target) forward = *target - *position;
-  if (!position || !forward || !(glm::length(*forward) > 0.f))
+  if (!position || !forward || !(glm::length(*forward) > kShortest))
     return input_error("the camera has no position or no direction", where,
                        R"(give "position": [x, y, z] and "forward": [x, y, z])");
   const auto fov = object.find("fov_y_deg");
@@ -48,7 +50,7 @@ Result<PlacedCamera> to_camera(const Json& object, const Mat4& to_world, const s
   PlacedCamera camera;
   camera.position = transform_point(to_world, *position);
   camera.forward = glm::normalize(transform_vector(to_world, *forward));
-  if (const auto up = vector_at(object, "up"); up && glm::length(*up) > 0.f)
+  if (const auto up = vector_at(object, "up"); up && glm::length(*up) > kShortest)
     camera.up = glm::normalize(transform_vector(to_world, *up));
   camera.vertical_fov = static_cast<float>(degrees) * kPi / 180.f;
   return camera;
@@ -59,13 +61,17 @@ Result<PlacedCamera> to_camera(const Json& object, const Mat4& to_world, const s
 Result<View> read_camera_file(const std::filesystem::path& path, const Mat4& to_world) {
   const Result<Bytes> bytes = read_file(path);
   if (!bytes) return tl::unexpected(bytes.error());
-  const Json file = Json::parse(*bytes, nullptr, /*allow_exceptions=*/false);
+  return parse_camera(as_text(*bytes), to_world, path.string());
+}
+
+Result<View> parse_camera(std::string_view text, const Mat4& to_world, const std::string& where) {
+  const Json file = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!file.is_object())
-    return input_error("this is not a camera in JSON", path.string(),
+    return input_error("this is not a camera in JSON", where,
                        R"(write {"position": [x, y, z], "forward": [x, y, z], "fov_y_deg": 45})");
   const auto inner = file.find("camera");
   const Json& object = inner != file.end() && inner->is_object() ? *inner : file;
-  Result<PlacedCamera> camera = to_camera(object, to_world, path.string());
+  Result<PlacedCamera> camera = to_camera(object, to_world, where);
   if (!camera) return tl::unexpected(camera.error());
   View view{std::move(*camera), size_at(object, "width"), size_at(object, "height")};
   if (view.width > 0 && view.height > 0)

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "halflight/base/result.h"
 #include "halflight/scene/geometry.h"
@@ -17,5 +19,7 @@ struct View {
 
 // Coordinates in the file are those of the scene file; `to_world` is Scene::to_world.
 Result<View> read_camera_file(const std::filesystem::path& path, const Mat4& to_world);
+// `where` names the text in messages.
+Result<View> parse_camera(std::string_view text, const Mat4& to_world, const std::string& where);
 
 }  // namespace halflight

@@ -143,29 +143,38 @@ void SectionWriter::add_bytes(std::string_view name, std::span<const std::byte> 
   ++sections_;
 }
 
-Result<void> SectionWriter::write(const std::filesystem::path& path) const {
-  Bytes file;
-  file.reserve(kHeader + body_.size());
+Bytes SectionWriter::bytes() const {
+  Bytes header;
   const std::uint64_t length = kHeader + body_.size();
-  append(file, kCheckpointMagic);
-  append(file, kCheckpointVersion);
-  append(file, sections_);
-  append(file, length);
-  append(file, header_checksum(sections_, length));
-  file.insert(file.end(), body_.begin(), body_.end());
+  append(header, kCheckpointMagic);
+  append(header, kCheckpointVersion);
+  append(header, sections_);
+  append(header, length);
+  append(header, header_checksum(sections_, length));
+  Bytes file(length);
+  std::copy(body_.begin(), body_.end(), std::copy(header.begin(), header.end(), file.begin()));
+  return file;
+}
+
+Result<void> SectionWriter::write(const std::filesystem::path& path) const {
+  const Bytes file = bytes();
   return write_file_atomically(path, std::as_bytes(std::span(file)));
 }
 
 Result<SectionReader> SectionReader::open(const std::filesystem::path& path) {
   auto bytes = read_file(path);
   if (!bytes) return tl::unexpected(bytes.error());
+  return parse(std::move(*bytes), path.string());
+}
+
+Result<SectionReader> SectionReader::parse(Bytes bytes, const std::string& where) {
   SectionReader reader;
-  reader.path_ = path.string();
-  reader.bytes_ = std::move(*bytes);
+  reader.where_ = where;
+  reader.bytes_ = std::move(bytes);
 
   Cursor cursor(reader.bytes_);
   if (cursor.text(kCheckpointMagic.size()) != kCheckpointMagic)
-    return input_error("this is not a checkpoint", reader.path_,
+    return input_error("this is not a checkpoint", reader.where_,
                        "name a file that solve --checkpoint has written");
   const auto version = cursor.number<std::uint32_t>();
   const auto sections = cursor.number<std::uint32_t>();
@@ -174,13 +183,13 @@ Result<SectionReader> SectionReader::open(const std::filesystem::path& path) {
   if (version != kCheckpointVersion && !cursor.ran_short())
     return input_error(fmt::format("the checkpoint is of version {}, and this program reads {}",
                                    version, kCheckpointVersion),
-                       reader.path_, "solve the scene again with this program");
+                       reader.where_, "solve the scene again with this program");
   if (cursor.ran_short() || !header_holds) return reader.damaged("header");
   if (length != reader.bytes_.size())
     return input_error(
         fmt::format("the checkpoint was cut short or added to: it has {} bytes instead of {}",
                     reader.bytes_.size(), length),
-        reader.path_, kSolveAnew);
+        reader.where_, kSolveAnew);
   for (std::uint32_t i = 0; i < sections; ++i) {
     Section section;
     section.name = cursor.text(cursor.number<std::uint8_t>());
@@ -243,7 +252,7 @@ Result<std::string> SectionReader::text(std::string_view name) const {
 }
 
 tl::unexpected<Error> SectionReader::damaged(std::string_view section) const {
-  return input_error(fmt::format("the checkpoint is damaged (at its {})", section), path_,
+  return input_error(fmt::format("the checkpoint is damaged (at its {})", section), where_,
                      kSolveAnew);
 }
 

@@ -50,6 +50,7 @@ class SectionWriter {
   void add(std::string_view name, std::string_view text) {
     add(name, std::span(text.data(), text.size()));
   }
+  Bytes bytes() const;
   Result<void> write(const std::filesystem::path& path) const;
 
  private:
@@ -64,6 +65,8 @@ class SectionReader {
  public:
   // Looks at all of the file but what the arrays hold.
   static Result<SectionReader> open(const std::filesystem::path& path);
+  // `where` names the bytes in messages.
+  static Result<SectionReader> parse(Bytes bytes, const std::string& where);
 
   template <class T>
   Result<std::vector<T>> array(std::string_view name) const {
@@ -91,7 +94,7 @@ class SectionReader {
   Result<void> unpack(const Section& section, std::span<std::byte> to) const;
   const Section* find(std::string_view name, std::size_t item) const;
 
-  std::string path_;
+  std::string where_;
   Bytes bytes_;
   std::vector<Section> sections_;
 };

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "halflight/base/result.h"
@@ -22,5 +23,8 @@ struct FeatureSizeRule {
 
 // In the order of the file. Errors name the line.
 Result<std::vector<FeatureSizeRule>> read_feature_size_rules(const std::filesystem::path& path);
+// `where` names the text in messages.
+Result<std::vector<FeatureSizeRule>> parse_feature_size_rules(std::string_view text,
+                                                              const std::string& where);
 
 }  // namespace halflight

@@ -27,8 +27,8 @@ bool is_glb(ByteSpan bytes, const std::filesystem::path& path) {
 
 }  // namespace
 
-GltfDocument::GltfDocument(const std::filesystem::path& path)
-    : path_(path), file_(value_or_fail(read_file(path))) {
+GltfDocument::GltfDocument(Bytes file, std::filesystem::path path)
+    : path_(std::move(path)), file_(std::move(file)) {
   if (is_glb(file_, path_))
     split_glb();
   else
@@ -88,7 +88,8 @@ void GltfDocument::check_version() const {
 JsonCursor GltfDocument::element(std::string_view array, const JsonCursor& from) const {
   const auto elements = root().find(array);
   const std::size_t n = elements ? elements->size() : 0;
-  return (*elements)[from.index_below(n, array)];
+  const std::size_t index = from.index_below(n, array);
+  return (*elements)[index];
 }
 
 Result<Bytes> GltfDocument::resolve_uri(const std::string& uri, const std::string& where) const {

@@ -22,7 +22,7 @@ using ByteSpan = std::span<const std::uint8_t>;
 // Reads buffers when they are asked for and keeps them. All members throw ReadFailure.
 class GltfDocument {
  public:
-  explicit GltfDocument(const std::filesystem::path& path);
+  GltfDocument(Bytes file, std::filesystem::path path);
 
   JsonCursor root() const { return {json_, path_.string()}; }
   // The i-th element of a top-level array ("accessors"), where `from` is the index of it.

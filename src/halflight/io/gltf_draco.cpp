@@ -24,6 +24,8 @@ std::vector<Vector> read_attribute(const draco::Mesh& mesh, const JsonCursor& id
   const auto* attribute = mesh.GetAttributeByUniqueId(
       static_cast<std::uint32_t>(id.index_below(1u << 31, "attribute")));
   if (!attribute) id.fail("the Draco data have no such attribute");
+  // glTF has none, and Draco's reader takes any byte for one.
+  if (attribute->data_type() == draco::DT_BOOL) id.fail("the attribute holds no numbers");
   if (attribute->num_components() != N)
     id.fail("the attribute should have " + std::to_string(N) + " components");
   std::vector<Vector> values(mesh.num_points());

@@ -13,19 +13,19 @@
 #include <ImfStdIO.h>
 #include <png.h>
 
-#include "halflight/io/read_file.h"
+#include "halflight/base/one_line.h"
+#include "halflight/io/image_reader.h"
+#include "halflight/io/scene_limits.h"
 
 namespace halflight {
 namespace {
 
-// A small file can claim any size: refuse before memory is taken (0.8 GB of pixels).
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
-
 Result<void> check_size(std::int64_t width, std::int64_t height, const std::string& where) {
-  if (width > 0 && height > 0 && width <= kMaxPixels && height <= kMaxPixels / width) return {};
+  if (width > 0 && height > 0 && width <= kMaxFloatPixels && height <= kMaxFloatPixels / width)
+    return {};
   return input_error("a picture of " + std::to_string(width) + " x " + std::to_string(height) +
                          " pixels is too large",
-                     where, "at most " + std::to_string(kMaxPixels) + " pixels can be read");
+                     where, "at most " + std::to_string(kMaxFloatPixels) + " pixels can be read");
 }
 
 struct FreePng {
@@ -39,6 +39,7 @@ tl::unexpected<Error> png_failure(const png_image& png, const std::string& where
 
 // libpng decodes 16-bit files to linear light and 8-bit files to sRGB, as they come.
 Result<Image> decode_png_values(const Bytes& bytes, PngValues values, const std::string& where) {
+  if (auto fits = check_png_chunks(bytes, where); !fits) return tl::unexpected(fits.error());
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   const std::unique_ptr<png_image, FreePng> free_on_return(&png);
@@ -102,7 +103,7 @@ Result<Image> decode_exr(const Bytes& bytes, const std::string& where) {
       for (Rgb& c : image.pixels) c = Rgb(c.r);
     return image;
   } catch (const std::exception& e) {
-    return input_error(std::string("the EXR picture cannot be decoded: ") + e.what(), where,
+    return input_error("the EXR picture cannot be decoded: " + one_line(e.what()), where,
                        "save it again");
   }
 }
@@ -116,10 +117,13 @@ bool starts_with(const Bytes& bytes, std::initializer_list<std::uint8_t> magic) 
 Result<Image> read_float_image(const std::filesystem::path& path, PngValues png) {
   const Result<Bytes> bytes = read_file(path);
   if (!bytes) return tl::unexpected(bytes.error());
-  if (starts_with(*bytes, {0x89, 'P', 'N', 'G'}))
-    return decode_png_values(*bytes, png, path.string());
-  if (starts_with(*bytes, {0x76, 0x2f, 0x31, 0x01})) return decode_exr(*bytes, path.string());
-  return input_error("this is neither a PNG nor an EXR picture", path.string(),
+  return decode_float_image(*bytes, path.string(), png);
+}
+
+Result<Image> decode_float_image(const Bytes& bytes, const std::string& where, PngValues png) {
+  if (starts_with(bytes, {0x89, 'P', 'N', 'G'})) return decode_png_values(bytes, png, where);
+  if (starts_with(bytes, {0x76, 0x2f, 0x31, 0x01})) return decode_exr(bytes, where);
+  return input_error("this is neither a PNG nor an EXR picture", where,
                      "convert it to one of them");
 }
 

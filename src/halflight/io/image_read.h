@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "halflight/base/image.h"
 #include "halflight/base/result.h"
+#include "halflight/io/read_file.h"
 
 namespace halflight {
 
@@ -17,5 +19,8 @@ enum class PngValues {
 // The format is told by the first bytes. One grey channel fills all three; alpha is put over black.
 Result<Image> read_float_image(const std::filesystem::path& path,
                                PngValues png = PngValues::linear);
+// `where` names the picture in messages.
+Result<Image> decode_float_image(const Bytes& bytes, const std::string& where,
+                                 PngValues png = PngValues::linear);
 
 }  // namespace halflight

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "halflight/io/read_file.h"
+#include "halflight/io/scene_limits.h"
 
 namespace halflight {
 

@@ -13,10 +13,6 @@
 
 namespace halflight {
 
-// A picture above this size is refused before memory is taken (16384 x 8192: 0.5 GB): a flat PNG
-// of a few kilobytes can claim any size.
-inline constexpr std::size_t kMaxTexels = std::size_t{1} << 27;
-
 struct Image8 {
   int width = 0;
   int height = 0;
@@ -38,6 +34,10 @@ Result<Image8> read_image(const std::filesystem::path& path);
 Result<Image8> decode_png(std::span<const std::uint8_t> bytes, const std::string& where);
 Result<Image8> decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& where);
 Result<Image8> decode_tga_or_bmp(std::span<const std::uint8_t> bytes, const std::string& where);
+
+// Nothing when every chunk of a PNG lies within it: libpng takes as much memory as a chunk claims,
+// up to 2 GB, before it looks for its bytes.
+Result<void> check_png_chunks(std::span<const std::uint8_t> bytes, const std::string& where);
 
 // Nothing when width x height can be held.
 Result<void> check_image_size(std::size_t width, std::size_t height, const std::string& where);

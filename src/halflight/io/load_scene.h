@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "halflight/base/result.h"
+#include "halflight/io/read_file.h"
 #include "halflight/scene/scene.h"
 
 namespace halflight {
@@ -18,5 +19,9 @@ struct LoadOptions {
 // Bad input returns an Error that names the file, the place in it and the remedy; what could be
 // tolerated is in Scene::warnings.
 Result<Scene> load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
+
+// The same of a file that was read already. What it refers to is looked for beside `path`.
+Result<Scene> parse_scene(Bytes file, const std::filesystem::path& path,
+                          const LoadOptions& options = {});
 
 }  // namespace halflight

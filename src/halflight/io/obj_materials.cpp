@@ -96,7 +96,11 @@ void ObjMaterials::read_library(const std::filesystem::path& path) {
     warnings_.add(text.error().line() + "; materials without it have reflectance 0.5");
     return;
   }
-  TextLines lines(*text);
+  read_library(std::move(*text), path);
+}
+
+void ObjMaterials::read_library(Bytes text, const std::filesystem::path& path) {
+  TextLines lines(text);
   Draft draft;
   MaterialId current;
   const auto finish = [&] {

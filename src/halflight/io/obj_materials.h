@@ -9,6 +9,7 @@
 
 #include "halflight/io/pictures.h"
 #include "halflight/io/read_failure.h"
+#include "halflight/io/read_file.h"
 #include "halflight/scene/scene.h"
 
 namespace halflight {
@@ -24,6 +25,7 @@ class ObjMaterials {
 
   // Adds the materials of one file. A missing file is a warning.
   void read_library(const std::filesystem::path& path);
+  void read_library(Bytes text, const std::filesystem::path& path);
   // The named material; one with default values (and a warning) when no library has it.
   MaterialId find_or_add(std::string_view name);
   // The material of faces before any usemtl.

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "halflight/base/result.h"
+#include "halflight/base/one_line.h"
 
 namespace halflight {
 
@@ -27,9 +27,9 @@ T value_or_fail(Result<T> result) {
 // What a reader tolerated. A broken file can be wrong in a million places: the rest is counted.
 class ReadWarnings {
  public:
-  void add(std::string text) {
+  void add(const std::string& text) {
     if (texts_.size() < kShown)
-      texts_.push_back(std::move(text));
+      texts_.push_back(one_line(text, kLongest));
     else
       ++more_;
   }
@@ -39,7 +39,7 @@ class ReadWarnings {
   }
 
  private:
-  static constexpr std::size_t kShown = 40;
+  static constexpr std::size_t kShown = 40, kLongest = 1000;
   std::vector<std::string> texts_;
   std::size_t more_ = 0;
 };

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "halflight/base/result.h"
@@ -10,6 +11,10 @@
 namespace halflight {
 
 using Bytes = std::vector<std::uint8_t>;
+
+inline std::string_view as_text(const Bytes& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 // Only regular files: a pipe or a device named by a scene file could keep the reader forever.
 Result<Bytes> read_file(const std::filesystem::path& path);

@@ -7,10 +7,10 @@
 
 namespace halflight {
 
-Scene read_gltf(const std::filesystem::path& path) {
+Scene read_gltf(Bytes file, const std::filesystem::path& path) {
   Scene scene;
   ReadWarnings warnings;
-  GltfDocument document(path);
+  GltfDocument document(std::move(file), path);
   GltfMaterials materials(document, scene, warnings);
   GltfMeshes meshes(document, materials, scene, warnings);
   read_gltf_nodes(document, meshes, scene, warnings);

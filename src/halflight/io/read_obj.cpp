@@ -29,8 +29,8 @@ std::uint32_t resolve(std::string_view word, const std::vector<T>& items) {
 
 class ObjReader {
  public:
-  explicit ObjReader(const std::filesystem::path& path)
-      : path_(path), text_(value_or_fail(read_file(path))), materials_(scene_, warnings_) {}
+  ObjReader(Bytes text, std::filesystem::path path)
+      : path_(std::move(path)), text_(std::move(text)), materials_(scene_, warnings_) {}
 
   Scene read() {
     check_encoding();
@@ -201,6 +201,8 @@ class ObjReader {
 
 }  // namespace
 
-Scene read_obj(const std::filesystem::path& path) { return ObjReader(path).read(); }
+Scene read_obj(Bytes text, const std::filesystem::path& path) {
+  return ObjReader(std::move(text), path).read();
+}
 
 }  // namespace halflight

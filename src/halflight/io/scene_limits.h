@@ -3,19 +3,34 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "halflight/io/read_failure.h"
 
 namespace halflight {
 
+// A fuzzer would spend its time on filling memory: it gets by with a 4096th.
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+inline constexpr int kFewer = 12;
+#else
+inline constexpr int kFewer = 0;
+#endif
+
 // About 10 GB when all are used; ids have 32 bits.
-inline constexpr std::size_t kMaxVertices = std::size_t{1} << 27;
-inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
-inline constexpr std::size_t kMaxInstances = std::size_t{1} << 22;
-inline constexpr std::size_t kMaxDecodedBytes = std::size_t{1} << 32;  // decompressed geometry
-inline constexpr std::size_t kMaxZeroElements = std::size_t{1} << 24;  // accessors without data
-inline constexpr std::size_t kMaxSceneTexels = std::size_t{1} << 30;
+inline constexpr std::size_t kMaxVertices = std::size_t{1} << (27 - kFewer);
+inline constexpr std::size_t kMaxTriangles = std::size_t{1} << (28 - kFewer);
+inline constexpr std::size_t kMaxInstances = std::size_t{1} << (22 - kFewer);
+// Decompressed geometry.
+inline constexpr std::size_t kMaxDecodedBytes = std::size_t{1} << (32 - kFewer);
+// Of accessors without data.
+inline constexpr std::size_t kMaxZeroElements = std::size_t{1} << (24 - kFewer);
+inline constexpr std::size_t kMaxSceneTexels = std::size_t{1} << (30 - kFewer);
+// A picture above this size is refused before memory is taken (16384 x 8192: 0.5 GB): a flat PNG
+// of a few kilobytes can claim any size.
+inline constexpr std::size_t kMaxTexels = std::size_t{1} << (27 - kFewer);
+// The same of a picture of floats (0.8 GB).
+inline constexpr std::int64_t kMaxFloatPixels = std::int64_t{1} << (26 - kFewer);
 
 // Counts what has been asked for and fails when it passes the limit.
 class ReadBudget {

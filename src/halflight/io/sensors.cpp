@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
-#include <string_view>
 
 #include <fmt/format.h>
 
+#include "halflight/base/one_line.h"
 #include "halflight/io/atomic_file.h"
 #include "halflight/io/read_file.h"
 
@@ -17,10 +17,6 @@ namespace {
 constexpr std::string_view kSpaces = " \t\r\v\f,;";
 constexpr std::size_t kColumns = 6;
 constexpr double kLargest = 1e30;  // coordinates are squared in single precision
-
-std::string place(const std::filesystem::path& path, std::size_t line) {
-  return fmt::format("{}:{}", path.string(), line);
-}
 
 // The numbers of one line without its comment.
 Result<std::vector<double>> numbers(std::string_view line, const std::string& where) {
@@ -37,7 +33,7 @@ Result<std::vector<double>> numbers(std::string_view line, const std::string& wh
     const auto [end, error] = std::from_chars(first, last, value);
     const bool is_position = values.size() < kColumns;
     if (error != std::errc() || end != last || (is_position && !(std::abs(value) < kLargest)))
-      return input_error(fmt::format("'{}' is not a number that can be used", word.substr(0, 40)),
+      return input_error(fmt::format("'{}' is not a number that can be used", one_line(word, 40)),
                          where, "a sensor is x y z nx ny nz");
     values.push_back(value);
   }
@@ -59,22 +55,24 @@ Result<Sensor> to_sensor(const std::vector<double>& v, const std::string& where)
 Result<std::vector<Sensor>> read_sensors(const std::filesystem::path& path) {
   const Result<Bytes> bytes = read_file(path);
   if (!bytes) return tl::unexpected(bytes.error());
-  std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  return parse_sensors(as_text(*bytes), path.string());
+}
+
+Result<std::vector<Sensor>> parse_sensors(std::string_view text, const std::string& where) {
   std::vector<Sensor> sensors;
   for (std::size_t line_number = 1; !text.empty(); ++line_number) {
     const std::size_t length = std::min(text.find('\n'), text.size());
-    const std::string where = place(path, line_number);
-    const auto values = numbers(text.substr(0, length), where);
+    const std::string place = fmt::format("{}:{}", where, line_number);
+    const auto values = numbers(text.substr(0, length), place);
     text.remove_prefix(std::min(length + 1, text.size()));
     if (!values) return tl::unexpected(values.error());
     if (values->empty()) continue;
-    const Result<Sensor> sensor = to_sensor(*values, where);
+    const Result<Sensor> sensor = to_sensor(*values, place);
     if (!sensor) return tl::unexpected(sensor.error());
     sensors.push_back(*sensor);
   }
   if (sensors.empty())
-    return input_error("the file holds no sensor", path.string(),
-                       "write one x y z nx ny nz a line");
+    return input_error("the file holds no sensor", where, "write one x y z nx ny nz a line");
   return sensors;
 }
 

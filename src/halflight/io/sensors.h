@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "halflight/base/result.h"
@@ -25,6 +26,8 @@ struct WorldSensor {
 };
 
 Result<std::vector<Sensor>> read_sensors(const std::filesystem::path& path);
+// `where` names the text in messages.
+Result<std::vector<Sensor>> parse_sensors(std::string_view text, const std::string& where);
 
 // `to_world` is Scene::to_world: a rotation with a uniform scale.
 WorldSensor to_world(const Mat4& to_world, const Sensor& sensor);

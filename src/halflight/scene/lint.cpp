@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "halflight/base/one_line.h"
+
 namespace halflight {
 namespace {
 
@@ -23,7 +25,8 @@ constexpr float kFarFromOrigin = 1e4f;
 
 std::string name_of(const Scene& scene, MaterialId id) {
   const std::string& name = scene.materials[id].name;
-  return name.empty() ? fmt::format("material {}", id.value) : fmt::format("material '{}'", name);
+  return name.empty() ? fmt::format("material {}", id.value)
+                      : fmt::format("material '{}'", one_line(name, 100));
 }
 
 std::string sizes_by_unit(float diagonal) {

@@ -57,8 +57,10 @@ float received_power(const SolverState& state) {
 std::uint32_t points_of(const SolverState& state, ElementId cell, float total_power) {
   const bool whole_and_small = state.tree.cell_size(cell) < 2.f * smallest_cell(state, cell);
   const float share = received_power(state, cell) / std::max(total_power, 1e-30f);
-  return std::clamp(static_cast<std::uint32_t>(share / kShareOfPoint),
-                    whole_and_small ? 1u : kPointsOfCell, kMostPoints);
+  // A checkpoint may hold any numbers; what is none of them counts as 0.
+  const float most = static_cast<float>(kMostPoints);
+  const float points = std::min(std::max(0.f, share / kShareOfPoint), most);
+  return std::max(static_cast<std::uint32_t>(points), whole_and_small ? 1u : kPointsOfCell);
 }
 
 // Where a cell's light is noisy, little is lost if it is one of many like it.

@@ -311,7 +311,13 @@ Result<void> write_checkpoint(const std::filesystem::path& path, const SolveOrig
 }
 
 Result<Checkpoint> Checkpoint::open(const std::filesystem::path& path) {
-  auto sections = SectionReader::open(path);
+  auto bytes = read_file(path);
+  if (!bytes) return tl::unexpected(bytes.error());
+  return parse(std::move(*bytes), path);
+}
+
+Result<Checkpoint> Checkpoint::parse(Bytes bytes, const std::filesystem::path& path) {
+  auto sections = SectionReader::parse(std::move(bytes), path.string());
   if (!sections) return tl::unexpected(sections.error());
   Checkpoint checkpoint;
   checkpoint.path_ = path;

@@ -39,6 +39,8 @@ class Checkpoint {
  public:
   // Errors of all of these name the file, what is wrong with it and the remedy.
   static Result<Checkpoint> open(const std::filesystem::path& path);
+  // The same of a file that was read already; the scene is looked for as seen from `path`.
+  static Result<Checkpoint> parse(Bytes bytes, const std::filesystem::path& path);
 
   const SolveOrigin& origin() const { return origin_; }
 

@@ -377,6 +377,7 @@ Result<std::unique_ptr<LoopbackServer>> LoopbackServer::start(int port, const st
   return std::unique_ptr<LoopbackServer>(new LoopbackServer(std::move(impl)));
 }
 
+void LoopbackServer::serve(int socket) { impl_->process_and_close_socket(socket); }
 int LoopbackServer::port() const { return impl_->port; }
 std::string LoopbackServer::url() const {
   return fmt::format("http://{}:{}/{}/", kLoopback, impl_->port, impl_->token);

@@ -55,6 +55,9 @@ class LoopbackServer {
   LoopbackServer(const LoopbackServer&) = delete;
   LoopbackServer& operator=(const LoopbackServer&) = delete;
 
+  // Answers what comes over a connected socket until that ends, on this thread, and closes it.
+  void serve(int socket);
+
   int port() const;
   std::string url() const;  // with the token
   std::size_t open_connections() const;

@@ -2,6 +2,20 @@
 
 namespace halflight {
 
+nlohmann::json parsed_request(std::string_view text) {
+  using nlohmann::json;
+  constexpr int kDeepest = 16;
+  bool deep = false;
+  json request = json::parse(
+      text,
+      [&](int depth, json::parse_event_t, json&) {
+        deep = deep || depth > kDeepest;
+        return !deep;
+      },
+      false);
+  return deep ? json(json::value_t::discarded) : request;
+}
+
 std::string json_text(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

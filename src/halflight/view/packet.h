@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include <nlohmann/json.hpp>
@@ -28,6 +29,10 @@ class Packet {
  private:
   std::string data_;
 };
+
+// What a page has sent; discarded where it is no JSON, or nested deeper than any request is: to
+// copy or to write such a value takes the stack.
+nlohmann::json parsed_request(std::string_view text);
 
 // Text of scene files may be anything; what is no UTF-8 is replaced.
 std::string json_text(const nlohmann::json& json);

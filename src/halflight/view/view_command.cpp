@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "halflight/view/packet.h"
+
 namespace halflight {
 namespace {
 
@@ -76,7 +78,7 @@ class CommandReader {
 };
 
 Result<json> parse_object(std::string_view text) {
-  json parsed = json::parse(text, nullptr, false);
+  json parsed = parsed_request(text);
   if (!parsed.is_object())
     return input_error("the request is not a JSON object", "request", "reload the page");
   return parsed;

@@ -86,7 +86,7 @@ Result<void> check_cell(const SolverState& state, ElementId e) {
 }  // namespace
 
 Result<ProbeRay> parse_probe_ray(std::string_view text) {
-  const json object = json::parse(text, nullptr, false);
+  const json object = parsed_request(text);
   ProbeRay ray;
   const auto vector = [&](const char* name, Vec3& to) {
     if (!object.is_object() || !object.contains(name)) return false;

@@ -83,7 +83,7 @@ WebReply control(ViewSession& session, const WebRequest& request) {
 }
 
 WebReply layer(ViewSession& session, const WebRequest& request) {
-  const json asked = json::parse(request.body, nullptr, false);
+  const json asked = parsed_request(request.body);
   const auto member = [&](const char* name) {
     return asked.is_object() && asked.contains(name) ? asked[name] : json();
   };

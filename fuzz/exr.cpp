@@ -1,0 +1,8 @@
+// OpenEXR pictures.
+#include "image_target.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace halflight;
+  fuzz::look_at(decode_float_image(fuzz::bytes_of(data, size), "picture"));
+  return 0;
+}

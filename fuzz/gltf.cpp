@@ -1,0 +1,8 @@
+// glTF as JSON, with its data in data URIs.
+#include "scene_target.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace halflight;
+  fuzz::inspect(parse_scene(fuzz::bytes_of(data, size), "/nowhere/scene.gltf"));
+  return 0;
+}
