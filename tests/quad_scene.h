@@ -39,6 +39,13 @@ class QuadScene {
     p.material = material;
     add(p);
   }
+  void triangle(const Vec3& a, const Vec3& b, const Vec3& c, MaterialId material) {
+    Primitive p;
+    p.positions = {a, b, c};
+    p.triangles = {{0, 1, 2}};
+    p.material = material;
+    add(p);
+  }
   // A ball of `rings` x 2 rings cells; fronts inwards, or outwards. Above the height `lid`, rounded
   // to a ring, it is open.
   void ball(const Vec3& centre, float radius, MaterialId material, bool inwards, int rings = 24,
