@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "halflight/rays/path_tracer.h"
@@ -35,6 +37,44 @@ class QuadScene {
     p.uvs[0] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     p.triangles = {{0, 1, 2}, {0, 2, 3}};
     p.material = material;
+    add(p);
+  }
+  void triangle(const Vec3& a, const Vec3& b, const Vec3& c, MaterialId material) {
+    Primitive p;
+    p.positions = {a, b, c};
+    p.triangles = {{0, 1, 2}};
+    p.material = material;
+    add(p);
+  }
+  // A ball of `rings` x 2 rings cells; fronts inwards, or outwards. Above the height `lid`, rounded
+  // to a ring, it is open.
+  void ball(const Vec3& centre, float radius, MaterialId material, bool inwards, int rings = 24,
+            float lid = kInfinity) {
+    Primitive p;
+    p.material = material;
+    const int around = 2 * rings;
+    for (int i = 0; i <= rings; ++i)
+      for (int k = 0; k < around; ++k) {
+        const double polar = std::acos(-1.0) * i / rings, turn = std::acos(-1.0) * k / rings;
+        const double r = i == 0 || i == rings ? 0.0 : std::sin(polar);
+        p.positions.push_back(centre + radius * Vec3(static_cast<float>(r * std::sin(turn)),
+                                                     static_cast<float>(std::cos(polar)),
+                                                     static_cast<float>(r * std::cos(turn))));
+      }
+    const auto face = [&](int a, int b, int c) {
+      if (inwards) std::swap(b, c);
+      p.triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                             static_cast<std::uint32_t>(c)});
+    };
+    for (int i = 0; i < rings; ++i) {
+      if (p.positions[static_cast<std::size_t>(i) * around].y > centre.y + lid + 1e-4f * radius)
+        continue;
+      for (int k = 0; k < around; ++k) {
+        const int next = (k + 1) % around, top = i * around, bottom = top + around;
+        if (i + 1 < rings) face(top + k, bottom + k, bottom + next);
+        if (i > 0) face(top + k, bottom + next, top + next);
+      }
+    }
     add(p);
   }
   // The six sides of a box; fronts inwards, or outwards.

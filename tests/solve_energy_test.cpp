@@ -25,6 +25,24 @@ TEST(Energy, LampAloneInSpaceLosesEverything) {
   EXPECT_EQ(balance.absorbed.g, 0.f);
 }
 
+// A glowing pane sends the share of its light that its surface is there: to cells, and to sensors.
+TEST(Energy, GlowingPaneSendsWhatItEmits) {
+  QuadScene scene;
+  scene.box({0, 0, 0}, {4, 3, 4}, scene.material(0.f), true);
+  const MaterialId pane = scene.pane(0.3f);
+  scene.scene.materials[pane].emission = Rgb(10.f);
+  scene.quad({1, 2, 1}, {1, 0, 0}, {0, 0, 1}, pane);
+  const SolverState state =
+      testing::solve(scene.scene, testing::options_of(LinkMaker::sampled, 0.1f));
+  const EnergyBalance balance = energy_balance(state);
+  EXPECT_NEAR(balance.emitted.g, 0.3f * kPi * 10.f, 1e-3f);
+  EXPECT_NEAR(balance.absorbed.g / balance.emitted.g, 1.f, 0.02f);
+  const float expected = 0.3f * kPi * 10.f * 4.f * testing::corner_form_factor(0.5f, 0.5f, 2.f);
+  const Reading reading =
+      SolutionReader(state, {}).read({{1.5f, 0.f, 1.5f}, testing::kUp, {}, false});
+  EXPECT_NEAR(reading.irradiance().g / expected, 1.f, 0.01f);
+}
+
 // Between unit squares at distance 1, F = 0.199825: the black one absorbs that share.
 TEST(Energy, WhatMissesTheOtherSquareEscapes) {
   QuadScene scene;

@@ -1,6 +1,7 @@
 #include "halflight/output/read_light.h"
 
 #include "halflight/base/parallel.h"
+#include "halflight/rays/adaptive_hemisphere.h"
 #include "halflight/rays/sampling.h"
 #include "halflight/solve/importance.h"
 #include "halflight/transport/outer_light.h"
@@ -15,6 +16,9 @@ constexpr int kLeastSkyRays = 64;
 constexpr float kBright = 5.f;
 constexpr float kFinestEdge = 1e-3f;  // of the scene's diagonal
 constexpr float kErrorOfPlainReading = 0.05f;
+// Of an emitter that a sensor sees through a small opening, few rays would meet anything.
+constexpr int kSensorShadowRays = 32;
+constexpr int kSensorPenumbraRays = 512;
 
 // Whole surfaces (none that needed cells) that reflect much more light than others.
 std::vector<EmittingSide> find_bright_reflectors(const SolverState& state,
@@ -80,6 +84,8 @@ ReadOptions sensor_reading(const SolverState& state) {
   ReadOptions options;
   const float more = std::clamp(kErrorOfPlainReading / state.options.error, 0.25f, 8.f);
   options.gather_rays = static_cast<int>(more * static_cast<float>(options.gather_rays));
+  options.direct.shadow_rays = kSensorShadowRays;
+  options.direct.penumbra_rays = kSensorPenumbraRays;
   return options;
 }
 
@@ -113,15 +119,20 @@ Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
   const Vec3 from = world.rays.lift(x, n);
   // Points in the air lie in no cell.
   const int rays = options_.gather_rays > 0 ? options_.gather_rays : kMeshReading.gather_rays;
+  std::uint32_t index = 0;
+  const auto seen = [&](const Vec3& w) {
+    const auto hit = world.rays.closest_hit(from, frame.to_world(w), kInfinity, hash(index++));
+    const bool counts = hit && !is_bright_[state_->surfaces->side_hit(*hit)];
+    return counts ? reflected_radiosity(*hit) : Rgb(0.f);
+  };
+  const Rgb bright = bright_.irradiance(x, n, options_.direct);
+  if (rays >= kLeastAdaptiveRays)
+    return adaptive_cosine_mean(rays, Vec2(0.5f), [&](const Vec3& w, float) { return seen(w); }) +
+           bright;
   Rgb sum(0.f);
-  for (int k = 0; k < rays; ++k) {
-    const auto index = static_cast<std::uint32_t>(k);
-    const Vec3 w = frame.to_world(cosine_hemisphere(r2_sequence(index)));
-    const auto hit = world.rays.closest_hit(from, w, kInfinity, hash(index));
-    if (!hit) continue;
-    if (!is_bright_[state_->surfaces->side_hit(*hit)]) sum += reflected_radiosity(*hit);
-  }
-  return sum / static_cast<float>(rays) + bright_.irradiance(x, n, options_.direct);
+  for (int k = 0; k < rays; ++k)
+    sum += seen(cosine_hemisphere(r2_sequence(static_cast<std::uint32_t>(k))));
+  return sum / static_cast<float>(rays) + bright;
 }
 
 Reading SolutionReader::read(const ReadingPoint& point) const {

@@ -5,6 +5,13 @@
 namespace halflight {
 namespace {
 
+// Metres from the origin: beyond, areas and distances overflow single precision somewhere.
+constexpr float kFarthest = 1e9f;
+
+bool usable(const Vec3& p) {  // false for what is not a number, too
+  return glm::all(glm::lessThanEqual(glm::abs(p), Vec3(kFarthest)));
+}
+
 void append_instance(const Scene& scene, const PrimitiveInstance& what, const Mat4& world,
                      Geometry& g) {
   const Primitive& p = scene.meshes[what.mesh].primitives[what.primitive];
@@ -33,7 +40,7 @@ void append_instance(const Scene& scene, const PrimitiveInstance& what, const Ma
     for (int k = 0; k < 3; ++k) v[k] = VertexId(placed.vertices.first + corner[k]);
     const Vec3 a = g.positions[v[0]], b = g.positions[v[1]], c = g.positions[v[2]];
     const float doubled_area = glm::length(glm::cross(b - a, c - a));
-    if (!is_finite(a) || !is_finite(b) || !is_finite(c) || !(doubled_area > 0.f)) {
+    if (!usable(a) || !usable(b) || !usable(c) || !(doubled_area > 0.f)) {
       ++g.degenerate_triangles;
       continue;
     }
@@ -42,6 +49,9 @@ void append_instance(const Scene& scene, const PrimitiveInstance& what, const Ma
     g.instances.push_back(instance);
     for (const Vec3& corner_position : {a, b, c}) g.bounds.extend(corner_position);
   }
+  // No triangle uses them any more, and positions can be compared everywhere else.
+  for (std::size_t i = placed.vertices.first; i < g.positions.size(); ++i)
+    if (!usable(g.positions[VertexId(i)])) g.positions[VertexId(i)] = Vec3(0.f);
   placed.vertices.last = static_cast<std::uint32_t>(g.positions.size());
   placed.triangles.last = static_cast<std::uint32_t>(g.triangles.size());
   g.primitive_instances.push_back(placed);

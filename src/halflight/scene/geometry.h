@@ -59,7 +59,7 @@ struct Geometry {
   std::vector<PunctualLight> lights;
   std::vector<PlacedCamera> cameras;
   Bounds3f bounds;
-  std::size_t degenerate_triangles = 0;  // left out: zero area or not finite
+  std::size_t degenerate_triangles = 0;  // left out: zero area, not finite, or beyond 1e9 m
 
   std::array<Vec3, 3> corners(TriangleId t) const {
     const auto& v = triangles[t];

@@ -129,9 +129,10 @@ void check_textures(const Scene& scene, std::vector<Finding>& findings) {
 
 void check_triangles(const Geometry& g, std::vector<Finding>& findings) {
   if (g.degenerate_triangles > 0)
-    findings.push_back(
-        {Severity::note, "degenerate-triangles",
-         fmt::format("{} triangles have no area and are left out", g.degenerate_triangles), ""});
+    findings.push_back({Severity::note, "degenerate-triangles",
+                        fmt::format("{} triangles have no area or no usable place and are left out",
+                                    g.degenerate_triangles),
+                        ""});
   if (const std::size_t n = count_duplicate_triangles(g); n > 0)
     findings.push_back({Severity::warning, "duplicate-triangles",
                         fmt::format("{} triangles lie exactly on others", n),

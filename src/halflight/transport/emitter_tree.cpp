@@ -45,6 +45,16 @@ Vec2 other_shift(Vec2 shift, std::uint32_t emitter) {
       hash(std::bit_cast<std::uint32_t>(shift.x), std::bit_cast<std::uint32_t>(shift.y), emitter));
 }
 
+// A translucent surface shines with the share of it that is there.
+Rgb radiance_at(const World& world, TriangleId t, Vec2 barycentric) {
+  return emission_at(world.scene, world.geometry, t, barycentric) *
+         opacity_at(world.scene, world.geometry, t, barycentric);
+}
+bool varies(const Material& m) {
+  const bool holes = m.alpha_texture.valid() || m.reflectance_texture.valid();
+  return m.emission_texture.valid() || (may_be_transparent(m) && holes);
+}
+
 // cos cos / r^2 between two oriented points, unit normals; without 1 / pi.
 float point_kernel(const Vec3& x, const Vec3& n, const Vec3& y, const Vec3& m) {
   const Vec3 between = y - x;
@@ -64,11 +74,11 @@ std::vector<EmittingSide> find_emitters(const World& world) {
     if (!m.emits()) continue;
     EmittingSide e;
     e.triangle = t;
-    e.textured = m.emission_texture.valid();
+    e.textured = varies(m);
     const std::uint32_t samples = e.textured ? kTextureSamples : 1;
     for (std::uint32_t k = 0; k < samples; ++k)
-      e.radiance += emission_at(world.scene, g, t, uniform_triangle(r2_sequence(k))) /
-                    static_cast<float>(samples);
+      e.radiance +=
+          radiance_at(world, t, uniform_triangle(r2_sequence(k))) / static_cast<float>(samples);
     e.power = average(e.radiance) * g.area(t);
     if (!(e.power > 0.f)) continue;
     emitters.push_back(e);
@@ -283,8 +293,7 @@ Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3&
       const float visible = kernel * seen(emitter, from, at(b), feature_size);
       seen_sum += visible;
       squares += visible * visible / kernel;
-      seen_radiance +=
-          visible * (e.textured ? emission_at(world_->scene, g, e.triangle, b) : e.radiance);
+      seen_radiance += visible * (e.textured ? radiance_at(*world_, e.triangle, b) : e.radiance);
     }
   };
   shoot(rays);

@@ -27,7 +27,7 @@ struct DirectLightOptions {
 struct EmittingSide {
   TriangleId triangle;
   bool back = false;  // from the clockwise side
-  Rgb radiance{0.f};  // mean over the triangle
+  Rgb radiance{0.f};  // mean over the triangle, times its opacity
   bool textured = false;
   float power = 0.f;  // average(radiance) * area
 };

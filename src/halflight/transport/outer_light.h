@@ -18,7 +18,8 @@ inline bool has_outer_light(const World& world) {
 Rgb punctual_irradiance(const Visibility& visibility, const Vec3& x, const Vec3& n,
                         float feature_size);
 
-// Irradiance from the sky seen through `samples` cosine-distributed rays.
+// Irradiance from the sky seen through `samples` cosine-distributed rays; many of them see where
+// its edges are and send as many again there.
 Rgb sky_irradiance(const Visibility& visibility, const Vec3& x, const Vec3& n, int samples,
                    Vec2 shift, float feature_size);
 
