@@ -1,14 +1,15 @@
 // Wall time to an error of irradiance at many sensors, beside the path tracer on the same machine
 // in the same run.
 //
-//   bench_time_to_error SENSORS SCENE...
+//   bench_time_to_error [--sensors FILE] SENSORS SCENE...
 //
-// Sensors lie at random over the sides that can see light, by area. Times start when the scene is
-// loaded and its ray structure built, which both need. NRMSE is free of the truth's own noise: two
-// independent path-traced estimates are subtracted from what is judged, and the two differences
-// multiplied. Median: of |E - truth| / max(truth, 1 % of the mean). One line of JSON for each
-// setting, then the time at which each error is reached: ours between two of the settings, the path
-// tracer's from its last one, as its error falls with the root of time.
+// --sensors writes them, one a line with both truths behind: x y z nx ny nz E E (of the last
+// scene). Sensors lie at random over the sides that can see light, by area. Times start when the
+// scene is loaded and its ray structure built, which both need. NRMSE is free of the truth's own
+// noise: two independent path-traced estimates are subtracted from what is judged, and the two
+// differences multiplied. Median: of |E - truth| / max(truth, 1 % of the mean). One line of JSON
+// for each setting, then the time at which each error is reached: ours between two of the settings,
+// the path tracer's from its last one, as its error falls with the root of time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +17,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <functional>
 #include <optional>
 #include <thread>
@@ -143,7 +146,16 @@ void print(const char* who, const std::string& setting, const Run& run) {
   std::fflush(stdout);
 }
 
-int compare(std::size_t sensors, const char* path) {
+void write_sensors(const char* path, const std::vector<ReadingPoint>& points, const Truth& truth) {
+  std::ofstream file(path);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 p = points[i].position, n = points[i].normal;
+    file << fmt::format("{} {} {} {} {} {} {} {}\n", p.x, p.y, p.z, n.x, n.y, n.z, truth.a[i],
+                        truth.b[i]);
+  }
+}
+
+int compare(std::size_t sensors, const char* path, const char* sensor_file) {
   auto scene = load_scene(path, {});
   if (!scene) {
     fmt::print(stderr, "{}: {}\n", path, scene.error().what);
@@ -160,6 +172,7 @@ int compare(std::size_t sensors, const char* path) {
   for (std::size_t i = 0; i < points.size(); ++i)
     truth.mean += 0.5 * static_cast<double>(truth.a[i] + truth.b[i]);
   truth.mean /= static_cast<double>(points.size());
+  if (sensor_file) write_sensors(sensor_file, points, truth);
 
   std::vector<Run> ours;
   Run paths_traced;
@@ -201,13 +214,16 @@ int compare(std::size_t sensors, const char* path) {
 }  // namespace halflight
 
 int main(int argc, char** argv) {
-  const long sensors = argc > 2 ? std::atol(argv[1]) : 0;
+  const bool keeps = argc > 2 && std::strcmp(argv[1], "--sensors") == 0;
+  const int first = keeps ? 3 : 1;
+  const long sensors = argc > first + 1 ? std::atol(argv[first]) : 0;
   if (sensors < 1) {
-    std::fputs("bench_time_to_error: SENSORS SCENE...\n", stderr);
+    std::fputs("bench_time_to_error: [--sensors FILE] SENSORS SCENE...\n", stderr);
     return 1;
   }
   int failed = 0;
-  for (int i = 2; i < argc; ++i)
-    failed |= halflight::compare(static_cast<std::size_t>(sensors), argv[i]);
+  for (int i = first + 1; i < argc; ++i)
+    failed |=
+        halflight::compare(static_cast<std::size_t>(sensors), argv[i], keeps ? argv[2] : nullptr);
   return failed;
 }
