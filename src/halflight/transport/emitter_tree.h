@@ -15,7 +15,7 @@ namespace halflight {
 
 struct DirectLightOptions {
   int shadow_rays = 16;    // to an emitter that gives most of the light, before looking closer
-  int penumbra_rays = 64;  // where the first ones disagree, and to all weak emitters together
+  int penumbra_rays = 64;  // where the first ones disagree
   // Emitters and groups of them are weak when they give at most this share of the light at the
   // point, groups also when they are seen under at most this angle (size / distance).
   float largest_group_share = 0.01f;
