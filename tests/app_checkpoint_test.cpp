@@ -38,20 +38,21 @@ TEST_F(CheckpointCommand, KilledAndResumedGivesTheSameBytes) {
   ASSERT_EQ(run(solve("whole")), 0) << text("err");
   const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(
       std::chrono::steady_clock::now() - start);
+  // On a busy machine the first run may have taken longer than the others will.
   int killed = 0;
-  for (std::uint64_t i = 0; i < 12; ++i) {
+  for (std::uint64_t i = 0; killed < 8 && i < 48; ++i) {
     fs::remove(path("part.ckpt"));
     // Each is killed once or twice, at moments spread over the run.
     for (std::uint64_t k = 0; k < 1 + i % 2; ++k) {
       const auto delay = std::chrono::milliseconds(
           static_cast<int>(static_cast<float>(took.count()) * to_unit_float(hash(i, k))));
-      killed += run_and_signal(solve("part") + " --resume", SIGKILL, delay) == -1;
+      if (run_and_signal(solve("part") + " --resume", SIGKILL, delay) == -1) ++killed;
     }
     ASSERT_EQ(run(solve("part") + " --resume"), 0) << text("err");
     EXPECT_EQ(text("part.txt"), text("whole.txt"));
     EXPECT_TRUE(text("part.ckpt") == text("whole.ckpt"));
   }
-  EXPECT_GT(killed, 6);
+  EXPECT_GE(killed, 8);
 }
 
 TEST_F(CheckpointCommand, InterruptedAndResumedGivesTheSameBytes) {
