@@ -23,7 +23,7 @@ constexpr float kMixed = 0.1f;
 constexpr int kLeastPlaces = 8, kLeastPlacesInView = 3;  // in view: by solid angle and cosine
 // An emitter that gives this much of the light takes all rays, others in proportion.
 constexpr float kShareOfAllRays = 0.25f;
-constexpr int kRaysOfWeak = 4;  // in shadow rays, at most
+constexpr int kRaysOfWeak = 8;  // in shadow rays, at most
 // Distances from a group count from this much of its size.
 constexpr float kNearGroup = 0.25f;
 constexpr std::uint32_t kChoices = ~0u;  // a stream of samples beside those of the emitters
