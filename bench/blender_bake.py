@@ -55,7 +55,8 @@ def nrmse(values, a, b):
 
 
 def bake(scene, sensors, folder):
-    """Irradiance of each bake and its seconds, in the order of `settings`."""
+    """Samples, seconds (wall, all processors) and irradiance of each bake: two truths, the one that
+    tells the overhead, then SAMPLES."""
     settings = [(TRUTH_SAMPLES, 1), (TRUTH_SAMPLES, 2)] + [(n, 3) for n in (1, *SAMPLES)]
     task = folder / "task.json"
     task.write_text(json.dumps({"scene": str(scene), "sensors": str(sensors),
@@ -96,27 +97,27 @@ def compare(arguments, scene):
         blender, bakes = bake(scene.resolve(), sensors, folder)
         rows = read_rows(sensors)
     (_, _, a), (_, _, b) = bakes[:2]
-    (n0, t0, _), runs = bakes[2], bakes[3:]
-    n1, t1, _ = runs[-1]
-    per_sample = (t1 - t0) / (n1 - n0)
+    (n0, first, _), runs = bakes[2], bakes[3:]
+    n1, last, _ = runs[-1]
+    per_sample = [(t1 - t0) / (n1 - n0) for t0, t1 in zip(first, last)]  # wall, all processors
     truth, other = [(x + y) / 2 for x, y in zip(a, b)], [(r[6] + r[7]) / 2 for r in rows]
     mean = mean_of(other)
-    show({"who": "cycles", "blender": blender, "overhead_seconds": t0 - n0 * per_sample,
-          "truths_differ": {"mean": mean_of(truth) / mean - 1,
-                            "rms": math.sqrt(mean_of([(x - y) ** 2
-                                                      for x, y in zip(truth, other)])) / mean}},
-         arguments.json)
+    rms = math.sqrt(mean_of([(x - y) ** 2 for x, y in zip(truth, other)]))
+    show({"who": "cycles", "blender": blender,
+          "overhead_seconds": first[0] - n0 * per_sample[0],
+          "truths_differ": {"mean": mean_of(truth) / mean - 1, "rms": rms / mean}}, arguments.json)
     for n, _, values in runs:
         error = nrmse(values, a, b)
-        show({"who": "cycles", "setting": f"{n} samples", "seconds": n * per_sample,
-              "nrmse": error}, arguments.json)
+        show({"who": "cycles", "setting": f"{n} samples", "seconds": n * per_sample[0],
+              "cpu_seconds": n * per_sample[1], "nrmse": error}, arguments.json)
     for target in TARGETS:
         line = next(x for x in ours if x.get("target") == target)
-        seconds = n * per_sample * (error / target) ** 2
-        mine = line["halflight"]
-        show({"scene": scene.stem, "target": target, "halflight": mine,
-              "path_tracer": line["path_tracer"], "cycles": seconds,
-              "times": seconds / mine if mine else None}, arguments.json)
+        result = {"scene": scene.stem} | line
+        for suffix, seconds in zip(("", "_cpu"), per_sample):
+            result["cycles" + suffix] = n * seconds * (error / target) ** 2
+            mine = line["halflight" + suffix]
+            result["cycles_times" + suffix] = mine and result["cycles" + suffix] / mine
+        show(result, arguments.json)
 
 
 def main():

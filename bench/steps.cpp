@@ -1,5 +1,6 @@
 // The steps of a solve one by one, on an office with so many small things: what a change to one of
-// them gains. Rays have a benchmark of their own (visibility.cpp), as have the hierarchies.
+// them gains. Traversal has benchmarks of its own (visibility.cpp, embree.cpp), as have the
+// hierarchies over size and threads (hierarchy.cpp).
 //
 //   bench_steps --benchmark_filter=sweep
 //
@@ -12,15 +13,19 @@
 #include <array>
 #include <map>
 
+#include "halflight/hierarchy/build_hierarchy.h"
 #include "halflight/hierarchy/live_sides.h"
 #include "halflight/output/read_light.h"
 #include "halflight/rays/sampling.h"
 #include "halflight/scene/procedural/office.h"
 #include "halflight/solve/sweep.h"
+#include "halflight/transport/emitter_tree.h"
 #include "halflight/transport/form_factor.h"
+#include "halflight/transport/item_buffer.h"
 #include "halflight/transport/sampled_links.h"
 #include "halflight/transport/transfer.h"
 #include "halflight/visibility/blocker_size.h"
+#include "halflight/visibility/multires_tree.h"
 
 namespace halflight {
 namespace {
@@ -57,6 +62,23 @@ void live_sides(benchmark::State& run, int things) {
   for (auto _ : run)
     benchmark::DoNotOptimize(
         find_live_sides(world.scene, world.geometry, *state.surfaces, world.rays));
+  count_items(run, world.geometry.triangles.size());
+}
+
+// Clusters over the office's surfaces: surfaces.
+void hierarchy(benchmark::State& run, int things, HierarchyKind kind) {
+  const Surfaces& surfaces = *solved(things).surfaces;
+  for (auto _ : run) benchmark::DoNotOptimize(build_hierarchy(kind, surfaces));
+  count_items(run, surfaces.surfaces.size());
+}
+
+// Nodes that rays are stopped in, with blocker sizes and extinction: triangles.
+void multires_tree(benchmark::State& run, int things) {
+  const SolverState& state = solved(things);
+  const World& world = *state.world;
+  const ClusterTree clusters = build_hierarchy(state.options.hierarchy, *state.surfaces);
+  for (auto _ : run)
+    benchmark::DoNotOptimize(MultiresTree(world.scene, world.geometry, *state.surfaces, clusters));
   count_items(run, world.geometry.triangles.size());
 }
 
@@ -106,6 +128,49 @@ void item_buffers(benchmark::State& run, int things) {
   count_items(run, state.tree.size());
 }
 
+// One picture of all cells of the office and what is seen of each: elements.
+void item_picture(benchmark::State& run, int things) {
+  const SolverState& state = solved(things);
+  std::vector<ElementId> cells;
+  for (std::size_t i = 0; i < state.tree.initial_size(); ++i)
+    if (!state.tree[ElementId(i)].is_cluster()) cells.emplace_back(i);
+  for (auto _ : run)
+    benchmark::DoNotOptimize(
+        visible_areas(state.tree, cells, state.opacity, glm::normalize(Vec3(1, 2, 3))));
+  count_items(run, cells.size());
+}
+
+// Rays from so many receivers, spread over all, to links: receivers.
+void sampled_links(benchmark::State& run, int things) {
+  constexpr std::size_t kReceivers = 2000;
+  const SolverState& state = solved(things);
+  const auto all = choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes);
+  std::vector<ElementId> some;
+  for (std::size_t i = 0; i < std::min(kReceivers, all.size()); ++i)
+    some.push_back(all[i * all.size() / std::min(kReceivers, all.size())]);
+  SampledLinkOptions options;
+  options.inside = state.inside.get();
+  for (auto _ : run)
+    benchmark::DoNotOptimize(
+        sample_links(state.tree, state.world->rays, state.opacity, some, options));
+  count_items(run, some.size());
+}
+
+// Light straight from the emitters at the middles of triangles: points.
+void direct_light(benchmark::State& run, int things) {
+  const SolverState& state = solved(things);
+  const World& world = *state.world;
+  const EmitterTree emitters(*state.visibility, find_emitters(world));
+  std::uint64_t k = 0;
+  for (auto _ : run) {
+    const TriangleId t(static_cast<std::size_t>(hash(++k, 3) % world.geometry.triangles.size()));
+    const Vec3 n = glm::normalize(world.geometry.scaled_normal(t));
+    const Vec3 x = world.rays.lift(world.geometry.point(t, Vec2(1.f / 3.f)), n);
+    benchmark::DoNotOptimize(emitters.irradiance(x, n, {.feature_size = kFeatureSize}));
+  }
+  count_items(run, 1);
+}
+
 // The first level of links, from the root's link to itself: elements there are then.
 void refinement(benchmark::State& run, int things) {
   const SolverState& before = solved(things);
@@ -127,6 +192,13 @@ void one_sweep(benchmark::State& run, int things) {
   count_items(run, state.link_total());
 }
 
+// The pull alone, which a sweep does last: elements.
+void pulling(benchmark::State& run, int things) {
+  SolverState state = solved(things);
+  for (auto _ : run) pull(state);
+  count_items(run, state.tree.size());
+}
+
 // Light at the middles of triangles, with and without a gather: points.
 void reading(benchmark::State& run, int things, int gather_rays) {
   const SolverState& state = solved(things);
@@ -144,7 +216,7 @@ void reading(benchmark::State& run, int things, int gather_rays) {
 }
 
 void register_all() {
-  const auto add = [](const char* name, int things, auto step) {
+  const auto add = [](const std::string& name, int things, auto step) {
     benchmark::RegisterBenchmark(fmt::format("{}/{}", name, things).c_str(),
                                  [=](benchmark::State& run) { step(run, things); })
         ->UseRealTime()
@@ -154,11 +226,19 @@ void register_all() {
   for (const int things : kSmallThings) {
     add("surfaces", things, surfaces);
     add("live_sides", things, live_sides);
+    for (const NamedHierarchy& h : kHierarchies)
+      add(fmt::format("hierarchy_{}", h.name), things,
+          [kind = h.kind](benchmark::State& run, int n) { hierarchy(run, n, kind); });
+    add("multires_tree", things, multires_tree);
     add("blocker_sizes", things, blocker_sizes);
+    add("item_picture", things, item_picture);
     add("item_buffers", things, item_buffers);
     add("transfer", things, transfers);
     add("refinement", things, refinement);
+    add("sampled_links", things, sampled_links);
+    add("direct_light", things, direct_light);
     add("sweep", things, one_sweep);
+    add("pull", things, pulling);
     add("read_gather", things,
         [](benchmark::State& run, int n) { reading(run, n, kMeshReading.gather_rays); });
     add("read_cells", things, [](benchmark::State& run, int n) { reading(run, n, 0); });

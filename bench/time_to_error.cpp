@@ -1,5 +1,5 @@
-// Wall time to an error of irradiance at many sensors, beside the path tracer on the same machine
-// in the same run.
+// Wall time and processor time to an error of irradiance at many sensors, beside the path tracer on
+// the same machine in the same run.
 //
 //   bench_time_to_error [--sensors FILE] SENSORS SCENE...
 //
@@ -18,6 +18,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <functional>
 #include <optional>
@@ -36,7 +37,8 @@ namespace {
 constexpr std::array kTargets{0.1, 0.05, 0.02, 0.01};
 constexpr int kPathsOfTruth = 128;  // of each of the two
 constexpr std::array kPaths{4, 16, 64};
-constexpr double kLongest = 10.0;  // seconds: no slower setting after one that takes so long
+constexpr double kLongest =
+    20.0;  // processor seconds: no slower setting after one that takes so long
 
 struct Setting {
   float error;
@@ -113,37 +115,70 @@ Judged judge(const std::vector<float>& values, const Truth& truth) {
           relative[relative.size() / 2]};
 }
 
-struct Run {
-  double seconds = 0.0;
-  Judged error;
+struct Times {
+  double wall = 0.0, cpu = 0.0;  // cpu: of all threads
 };
 
+class Stopwatch {
+ public:
+  Times read() const {
+    return {seconds_since(start_), static_cast<double>(std::clock() - cpu_start_) / CLOCKS_PER_SEC};
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::clock_t cpu_start_ = std::clock();
+};
+
+struct Run {
+  Times seconds;
+  Judged error;
+};
+using Clock = double Times::*;
+
 // Where the line through the fastest runs reaches the error, both scales logarithmic; none: never.
-std::optional<double> seconds_to(const std::vector<Run>& runs, double target) {
+std::optional<double> seconds_to(const std::vector<Run>& runs, double target, Clock clock) {
   std::optional<double> best;
   for (const Run& a : runs) {
-    if (a.error.nrmse <= target) best = std::min(best.value_or(a.seconds), a.seconds);
+    const double start = a.seconds.*clock;
+    if (a.error.nrmse <= target) best = std::min(best.value_or(start), start);
     for (const Run& b : runs) {
-      if (!(a.error.nrmse > target && b.error.nrmse < target && b.seconds > a.seconds)) continue;
+      const double end = b.seconds.*clock;
+      if (!(a.error.nrmse > target && b.error.nrmse < target && end > start)) continue;
       const double t = std::log(a.error.nrmse / target) / std::log(a.error.nrmse / b.error.nrmse);
-      const double seconds = a.seconds * std::pow(b.seconds / a.seconds, t);
+      const double seconds = start * std::pow(end / start, t);
       best = std::min(best.value_or(seconds), seconds);
     }
   }
   return best;
 }
 
-double seconds_of_paths(const Run& last, double target) {
+double seconds_of_paths(const Run& last, double target, Clock clock) {
   const double factor = last.error.nrmse / target;
-  return last.seconds * factor * factor;
+  return last.seconds.*clock * factor * factor;
 }
 
 void print(const char* who, const std::string& setting, const Run& run) {
-  fmt::print(
-      R"({{"who": "{}", "setting": "{}", "seconds": {:.4f}, "nrmse": {:.5f}, "median": {:.5f}}})"
-      "\n",
-      who, setting, run.seconds, run.error.nrmse, run.error.median);
+  fmt::print(R"({{"who": "{}", "setting": "{}", "seconds": {:.4f}, "cpu_seconds": {:.4f}, )"
+             R"("nrmse": {:.5f}, "median": {:.5f}}})"
+             "\n",
+             who, setting, run.seconds.wall, run.seconds.cpu, run.error.nrmse, run.error.median);
   std::fflush(stdout);
+}
+
+void print_target(double target, const std::vector<Run>& ours, const Run& paths) {
+  const auto number = [](std::optional<double> x) {
+    return x ? fmt::format("{:.3f}", *x) : "null";
+  };
+  std::string line = fmt::format(R"({{"target": {})", target);
+  for (const auto& [suffix, clock] :
+       {std::pair{"", &Times::wall}, std::pair{"_cpu", &Times::cpu}}) {
+    const std::optional<double> a = seconds_to(ours, target, clock);
+    const double b = seconds_of_paths(paths, target, clock);
+    line += fmt::format(R"(, "halflight{0}": {1}, "path_tracer{0}": {2:.3f}, "times{0}": {3})",
+                        suffix, number(a), b, number(a ? std::optional(b / *a) : std::nullopt));
+  }
+  fmt::print("{}}}\n", line);
 }
 
 void write_sensors(const char* path, const std::vector<ReadingPoint>& points, const Truth& truth) {
@@ -177,36 +212,29 @@ int compare(std::size_t sensors, const char* path, const char* sensor_file) {
   std::vector<Run> ours;
   Run paths_traced;
   for (const Setting& setting : kSettings) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     SolverState state = make_state(world, {.error = setting.error});
     while (!state.done()) advance(state, Progress());
-    const double solved = seconds_since(start);
+    const double solved = watch.read().wall;
     const SolutionReader reader(
         state, {.gather_rays = setting.gather_rays, .direct = kMeshReading.direct});
     std::vector<float> values;
     for (const Reading& r : reader(points)) values.push_back(average(r.irradiance()));
-    ours.push_back({seconds_since(start), judge(values, truth)});
+    ours.push_back({watch.read(), judge(values, truth)});
     print("halflight",
           fmt::format("error {:g} gather {} solve {:.3f} s", setting.error, setting.gather_rays,
                       solved),
           ours.back());
-    if (ours.back().seconds > kLongest) break;
+    if (ours.back().seconds.cpu > kLongest) break;
   }
   for (const int paths : kPaths) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const std::vector<float> values = trace_paths(*world, points, paths, 7);
-    paths_traced = {seconds_since(start), judge(values, truth)};
+    paths_traced = {watch.read(), judge(values, truth)};
     print("path tracer", fmt::format("{} paths", paths), paths_traced);
-    if (paths_traced.seconds > kLongest) break;
+    if (paths_traced.seconds.cpu > kLongest) break;
   }
-  for (const double target : kTargets) {
-    const std::optional<double> a = seconds_to(ours, target);
-    const double b = seconds_of_paths(paths_traced, target);
-    fmt::print(R"({{"target": {}, "halflight": {}, "path_tracer": {:.3f}, "times": {}}})"
-               "\n",
-               target, a ? fmt::format("{:.3f}", *a) : "null", b,
-               a ? fmt::format("{:.1f}", b / *a) : "null");
-  }
+  for (const double target : kTargets) print_target(target, ours, paths_traced);
   return 0;
 }
 
