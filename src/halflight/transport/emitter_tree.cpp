@@ -23,7 +23,6 @@ constexpr float kMixed = 0.1f;
 constexpr int kLeastPlaces = 8, kLeastPlacesInView = 3;  // in view: by solid angle and cosine
 // An emitter that gives this much of the light takes all rays, others in proportion.
 constexpr float kShareOfAllRays = 0.25f;
-constexpr int kRaysOfWeak = 8;  // in shadow rays, at most
 // Distances from a group count from this much of its size.
 constexpr float kNearGroup = 0.25f;
 constexpr std::uint32_t kChoices = ~0u;  // a stream of samples beside those of the emitters
@@ -408,7 +407,9 @@ Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptio
                          rays_for(light, options.penumbra_rays), shift, options.feature_size);
   }
   if (first_of_rest != cut.end()) {
-    const int rays = std::min(options.penumbra_rays, kRaysOfWeak * options.shadow_rays);
+    // In penumbrae half of them: what is mixed here is which emitters are seen.
+    const int rays =
+        std::max(std::min(kRaysToJudgeBy, options.penumbra_rays), options.penumbra_rays / 2);
     sum += from_some({first_of_rest, cut.end()}, x, n, rays_for(rest, rays), shift,
                      options.feature_size);
   }
