@@ -13,6 +13,7 @@
 #include "halflight/output/lit_mesh.h"
 #include "halflight/output/read_light.h"
 #include "halflight/solve/memory.h"
+#include "terminal_progress.h"
 
 namespace halflight::app {
 namespace {
@@ -125,6 +126,16 @@ Result<void> write_lit(const LitArguments& arguments, const SolverState& state, 
   report.end_phase("write lit", phase);
   report.set_lit_mesh(mesh, exposure);
   return written ? baked : written;
+}
+
+Result<void> write_readings(const SensorArguments& sensor_arguments,
+                            std::span<const Sensor> sensors, const LitArguments& lit,
+                            const SolverState& state) {
+  if (!sensors.empty())
+    if (auto written = write_irradiance(sensor_arguments, state, sensors); !written) return written;
+  if (lit.path.empty()) return {};
+  Report report;
+  return write_lit(lit, state, report, Progress(terminal_progress()));
 }
 
 }  // namespace halflight::app

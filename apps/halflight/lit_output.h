@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 #include <CLI/App.hpp>
@@ -12,6 +13,7 @@
 #include "halflight/output/lit_mesh.h"
 #include "halflight/output/report.h"
 #include "halflight/solve/solver.h"
+#include "sensor_arguments.h"
 
 namespace halflight::app {
 
@@ -35,5 +37,11 @@ LitMeshOptions lit_mesh_options(const SolverState& state, const LitArguments& ar
 // room for a lightmap the lit scene is written without.
 Result<void> write_lit(const LitArguments& arguments, const SolverState& state, Report& report,
                        const Progress& progress);
+
+// What is read from a solution that is there already: sensors if any are given, the lit scene if it
+// is wanted.
+Result<void> write_readings(const SensorArguments& sensor_arguments,
+                            std::span<const Sensor> sensors, const LitArguments& lit,
+                            const SolverState& state);
 
 }  // namespace halflight::app

@@ -10,7 +10,6 @@
 #include "halflight/solve/mix.h"
 #include "lit_output.h"
 #include "sensor_arguments.h"
-#include "terminal_progress.h"
 
 namespace halflight::app {
 namespace {
@@ -80,12 +79,7 @@ Result<void> mix_groups(const MixArguments& arguments) {
   if (!factors) return tl::unexpected(factors.error());
   relight(*state, *factors);
   mix(*state, *factors);
-  if (!sensors->empty())
-    if (auto written = write_irradiance(arguments.sensors, *state, *sensors); !written)
-      return written;
-  if (arguments.lit.path.empty()) return {};
-  Report report;
-  return write_lit(arguments.lit, *state, report, Progress(terminal_progress()));
+  return write_readings(arguments.sensors, *sensors, arguments.lit, *state);
 }
 
 }  // namespace

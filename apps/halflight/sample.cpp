@@ -6,7 +6,6 @@
 #include "halflight/base/parallel.h"
 #include "lit_output.h"
 #include "sensor_arguments.h"
-#include "terminal_progress.h"
 
 namespace halflight::app {
 namespace {
@@ -27,12 +26,7 @@ Result<void> sample(const SampleArguments& arguments) {
   if (!sensors) return tl::unexpected(sensors.error());
   const Result<SolverState> state = restore(arguments.checkpoint);
   if (!state) return tl::unexpected(state.error());
-  if (!sensors->empty())
-    if (auto written = write_irradiance(arguments.sensors, *state, *sensors); !written)
-      return written;
-  if (arguments.lit.path.empty()) return {};
-  Report report;
-  return write_lit(arguments.lit, *state, report, Progress(terminal_progress()));
+  return write_readings(arguments.sensors, *sensors, arguments.lit, *state);
 }
 
 }  // namespace

@@ -120,19 +120,12 @@ Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
   // Points in the air lie in no cell.
   const int rays = options_.gather_rays > 0 ? options_.gather_rays : kMeshReading.gather_rays;
   std::uint32_t index = 0;
-  const auto seen = [&](const Vec3& w) {
+  const auto seen = [&](const Vec3& w, float) {
     const auto hit = world.rays.closest_hit(from, frame.to_world(w), kInfinity, hash(index++));
     const bool counts = hit && !is_bright_[state_->surfaces->side_hit(*hit)];
     return counts ? reflected_radiosity(*hit) : Rgb(0.f);
   };
-  const Rgb bright = bright_.irradiance(x, n, options_.direct);
-  if (rays >= kLeastAdaptiveRays)
-    return adaptive_cosine_mean(rays, Vec2(0.5f), [&](const Vec3& w, float) { return seen(w); }) +
-           bright;
-  Rgb sum(0.f);
-  for (int k = 0; k < rays; ++k)
-    sum += seen(cosine_hemisphere(r2_sequence(static_cast<std::uint32_t>(k))));
-  return sum / static_cast<float>(rays) + bright;
+  return adaptive_cosine_mean(rays, Vec2(0.5f), seen) + bright_.irradiance(x, n, options_.direct);
 }
 
 Reading SolutionReader::read(const ReadingPoint& point) const {

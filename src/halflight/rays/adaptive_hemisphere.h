@@ -111,9 +111,15 @@ class AdaptiveCosineMean {
   std::vector<std::uint8_t> finer_;
 };
 
+// The same; few rays are spread evenly.
 template <class Seen>
 Rgb adaptive_cosine_mean(int rays, Vec2 shift, const Seen& seen) {
-  return AdaptiveCosineMean<Seen>(rays, shift, seen).mean();
+  if (rays >= kLeastAdaptiveRays) return AdaptiveCosineMean<Seen>(rays, shift, seen).mean();
+  const auto count = static_cast<float>(rays);
+  Rgb sum(0.f);
+  for (int k = 0; k < rays; ++k)
+    sum += seen(cosine_hemisphere(r2_sequence(static_cast<std::uint32_t>(k), shift)), count);
+  return sum / count;
 }
 
 }  // namespace halflight

@@ -76,7 +76,7 @@ DirectLightOptions cell_direct_light(const SolverState& state, ElementId cell, f
   const float share = kErrorOfAllShadowRays / aimed_error(state);
   options.shadow_rays =
       std::clamp(static_cast<int>(share * static_cast<float>(options.shadow_rays)),
-                 std::min(kFewestShadowRays, options.shadow_rays), options.shadow_rays);
+                 kFewestShadowRays, options.shadow_rays);
   options.penumbra_rays = options.shadow_rays;
   options.feature_size = state.feature_sizes[cell];
   return options;
@@ -87,7 +87,7 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uin
                               std::uint64_t stream, const DirectLightOptions& direct) {
   const EmitterTree* emitters = state.sampled[cell] != 0 ? state.emitters.get() : nullptr;
   const Vec3 n = state.tree.normal(cell);
-  const float s = state.feature_sizes[cell];
+  const float s = direct.feature_size;
   // All points of a pilot look at the same places: what differs then lies in the points.
   const auto samples_of = [&](std::uint32_t k) { return hash(stream, stream == kPilot ? 0 : k); };
   GivenLight result;

@@ -319,18 +319,16 @@ double share_done(const SolverState& state) {
   return 1.0;
 }
 
-// Fewer rays where the links of those and of all that still wait would not fit into memory; 0 where
-// next to none do.
-float share_of_rays_within(const SolverState& state, const std::vector<ElementId>& receivers,
-                           std::size_t roots, const SampledLinkOptions& options) {
+// Fewer rays where the links of what receives below these roots and of all that still wait would
+// not fit into memory; 0 where next to none do.
+float share_of_rays_within(const SolverState& state, const std::vector<ElementId>& roots,
+                           const SampledLinkOptions& options) {
   if (state.options.memory == 0) return 1.f;
   double wanted = 0.0;
-  for (const ElementId e : receivers)
-    wanted += rays_of(state.tree, e,
-                      state.tree[e].is_cluster() ? options.rays_per_cluster : options.rays_per_cell,
-                      options);
-  const auto waiting = static_cast<double>(roots + state.schedule.receivers.size());
-  wanted *= waiting / static_cast<double>(std::max<std::size_t>(1, roots));
+  for (const ElementId e : choose_receivers(state.tree, roots, state.feature_sizes))
+    wanted += rays_of(state.tree, e, options);
+  const auto waiting = static_cast<double>(roots.size() + state.schedule.receivers.size());
+  wanted *= waiting / static_cast<double>(std::max<std::size_t>(1, roots.size()));
   const auto room = static_cast<double>(memory_room(state).sampled_links);
   return wanted > room ? static_cast<float>(room / wanted) : 1.f;
 }
@@ -342,9 +340,7 @@ void sample_receivers(SolverState& state, std::size_t k, IterationRecord& record
   const std::vector<ElementId> receivers(first, waiting.end());
   waiting.erase(first, waiting.end());
   SampledLinkOptions options = sampled_link_options(state);
-  const float share =
-      share_of_rays_within(state, choose_receivers(state.tree, receivers, state.feature_sizes),
-                           receivers.size(), options);
+  const float share = share_of_rays_within(state, receivers, options);
   if (share < 1.f) {
     state.schedule.short_of_memory = 1;
     // Fewer rays than in the round before would be no gain.

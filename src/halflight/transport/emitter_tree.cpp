@@ -23,8 +23,8 @@ constexpr float kMixed = 0.1f;
 constexpr int kLeastPlaces = 8, kLeastPlacesInView = 3;  // in view: by solid angle and cosine
 // An emitter that gives this much of the light takes all rays, others in proportion.
 constexpr float kShareOfAllRays = 0.25f;
-// Distances from a group count from this much of its size.
-constexpr float kNearGroup = 0.25f;
+// Distances from a group count from this much of its size, where they bound what it gives less.
+constexpr float kNearGroup = 0.25f, kLeastDistance = 0.01f;
 constexpr std::uint32_t kChoices = ~0u;  // a stream of samples beside those of the emitters
 // Directions below the horizon keep this much of the cosine that samples follow.
 constexpr float kLeastCosine = 0.01f;
@@ -94,9 +94,7 @@ EmitterTree::EmitterTree(const Visibility& visibility, std::vector<EmittingSide>
   if (emitters_.empty()) return;
   nodes_.reserve(2 * emitters_.size());
   build(0, static_cast<std::uint32_t>(emitters_.size()));
-  float sum = 0.f;
   for (const EmittingSide& e : emitters_) {
-    cumulative_power_.push_back(sum += e.power);
     const auto [a, b, c] = world_->geometry.corners(e.triangle);
     const Vec3 middle = (a + b + c) / 3.f;
     const float size = 2.f * std::max({glm::distance(a, middle), glm::distance(b, middle),
@@ -172,6 +170,11 @@ bool EmitterTree::cannot_light(const Node& node, const Vec3& x, const Vec3& n) c
   return cosine_of_difference(cosine_of_difference(cos_axis, node.cos_spread), cos_box) <= 0.f;
 }
 
+float EmitterTree::sent_to(const Node& node, const Vec3& x, float least_distance) {
+  const Vec3 nearest = glm::clamp(x, node.box.lower, node.box.upper) - x;
+  return node.power / std::max(glm::dot(nearest, nearest), least_distance * least_distance);
+}
+
 // Unoccluded: close for single triangles, an upper bound for groups.
 float EmitterTree::expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const {
   if (node.right == 0) {
@@ -186,9 +189,7 @@ float EmitterTree::expected_irradiance(const Node& node, const Vec3& x, const Ve
            polygon_form_factor(x, n, world_->geometry.corners(e.triangle));
   }
   if (cannot_light(node, x, n)) return 0.f;
-  const Vec3 nearest = glm::clamp(x, node.box.lower, node.box.upper) - x;
-  const float size = node.box.diagonal();
-  return node.power / std::max(glm::dot(nearest, nearest), 1e-4f * size * size);
+  return sent_to(node, x, kLeastDistance * node.box.diagonal());
 }
 
 // Opens the strongest group until all that are left are weak or seen under a small angle.
@@ -305,17 +306,9 @@ Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3&
   return kernel_sum > 0.f ? kPi * form_factor * seen_radiance / kernel_sum : Rgb(0.f);
 }
 
-EmitterTree::ChosenEmitter EmitterTree::choose_below(std::uint32_t node, const Vec3& x,
-                                                     const Vec3& n, float choice) const {
-  // Unlike the bounds of the cut, no more than a middle estimate: what one group is thought to give
-  // too much, others would get too rarely.
-  const auto estimate = [&](const Node& group) {
-    if (group.right == 0) return expected_irradiance(group, x, n);
-    if (cannot_light(group, x, n)) return 0.f;
-    const Vec3 nearest = glm::clamp(x, group.box.lower, group.box.upper) - x;
-    const float size = kNearGroup * group.box.diagonal();
-    return group.power / std::max(glm::dot(nearest, nearest), size * size);
-  };
+template <class Estimate>
+EmitterTree::ChosenEmitter EmitterTree::choose_below(std::uint32_t node, float choice,
+                                                     const Estimate& estimate) const {
   float probability = 1.f;
   while (nodes_[node].right != 0) {
     const std::uint32_t left = node + 1, right = nodes_[node].right;
@@ -334,6 +327,12 @@ Rgb EmitterTree::from_some(std::span<const CutNode> nodes, const Vec3& x, const 
                            Vec2 shift, float feature_size) const {
   float expected = 0.f;
   for (const CutNode& c : nodes) expected += c.expected;
+  // Unlike the bounds of the cut, no more than a middle estimate: what one group is thought to give
+  // too much, others would get too rarely.
+  const auto estimate = [&](const Node& node) {
+    if (node.right == 0) return expected_irradiance(node, x, n);
+    return cannot_light(node, x, n) ? 0.f : sent_to(node, x, kNearGroup * node.box.diagonal());
+  };
   const Vec2 choice_shift = other_shift(shift, kChoices);
   Rgb sum(0.f);
   std::size_t at = 0;
@@ -344,7 +343,7 @@ Rgb EmitterTree::from_some(std::span<const CutNode> nodes, const Vec3& x, const 
     const float choice = expected * (static_cast<float>(k) + u.x) / static_cast<float>(rays);
     while (at + 1 < nodes.size() && before + nodes[at].expected <= choice)
       before += nodes[at++].expected;
-    const ChosenEmitter chosen = choose_below(nodes[at].node, x, n, u.y);
+    const ChosenEmitter chosen = choose_below(nodes[at].node, u.y, estimate);
     if (!(chosen.probability > 0.f)) continue;
     sum += from_triangle(chosen.emitter, x, n, 1, 1, r2_sequence(index, shift), feature_size) /
            (nodes[at].expected * chosen.probability);
@@ -356,30 +355,18 @@ std::optional<EmitterPoint> EmitterTree::choose(const Vec3& x, float radius, con
   if (empty()) return std::nullopt;
   // An upper estimate of what a group sends, whichever way the receiver faces.
   const auto estimate = [&](const Node& node) {
-    const Vec3 nearest = glm::clamp(x, node.box.lower, node.box.upper) - x;
-    const float size = std::max(radius, 0.25f * node.box.diagonal());
-    return node.power / std::max(glm::dot(nearest, nearest), size * size);
+    return sent_to(node, x, std::max(radius, kNearGroup * node.box.diagonal()));
   };
-  float choice = u.z, probability = 1.f;
-  std::uint32_t index = 0;
-  while (nodes_[index].right != 0) {
-    const std::uint32_t left = index + 1, right = nodes_[index].right;
-    const float a = estimate(nodes_[left]), b = estimate(nodes_[right]);
-    const float share = a / (a + b);
-    const bool first = choice < share;
-    choice = first ? choice / share : (choice - share) / (1.f - share);
-    probability *= first ? share : 1.f - share;
-    index = first ? left : right;
-  }
+  const ChosenEmitter chosen = choose_below(0, u.z, estimate);
   EmitterPoint point;
-  point.emitter = nodes_[index].first;
+  point.emitter = chosen.emitter;
   const EmittingSide& e = emitters_[point.emitter];
   const auto corner = world_->geometry.corners(e.triangle);
   const Vec2 b = uniform_triangle({u.x, u.y});
   point.position = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
   point.normal = shapes_[point.emitter].normal;
   const float area = world_->geometry.area(e.triangle);
-  point.power = e.radiance * (area / probability);
+  point.power = e.radiance * (area / chosen.probability);
   return point;
 }
 

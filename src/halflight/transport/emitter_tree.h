@@ -14,8 +14,9 @@
 namespace halflight {
 
 struct DirectLightOptions {
-  int shadow_rays = 16;    // to an emitter that gives most of the light, before looking closer
-  int penumbra_rays = 64;  // where the first ones disagree
+  // To an emitter that gives a quarter of the light or more, others take fewer in proportion.
+  int shadow_rays = 16;    // before looking closer
+  int penumbra_rays = 64;  // where the first ones disagree; weak emitters together take half
   // Emitters and groups of them are weak when they give at most this share of the light at the
   // point, groups also when they are seen under at most this angle (size / distance).
   float largest_group_share = 0.01f;
@@ -82,6 +83,8 @@ class EmitterTree {
   Vec3 normal_of(const EmittingSide& e) const;
   Rgb from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3& n, int rays, int more_rays,
                     Vec2 shift, float feature_size) const;
+  // If all of it shone towards x, from its nearest point.
+  static float sent_to(const Node& node, const Vec3& x, float least_distance);
   // One ray each to emitters chosen at random below these nodes.
   Rgb from_some(std::span<const CutNode> nodes, const Vec3& x, const Vec3& n, int rays, Vec2 shift,
                 float feature_size) const;
@@ -89,8 +92,10 @@ class EmitterTree {
     std::uint32_t emitter = 0;
     float probability = 0.f;
   };
-  // By what the emitters may give at x, choice in [0, 1); probability 0: none can light it.
-  ChosenEmitter choose_below(std::uint32_t node, const Vec3& x, const Vec3& n, float choice) const;
+  // One of the emitters below a node, in proportion to estimate(node) on the way down, choice in
+  // [0, 1); probability 0: nothing is expected of any.
+  template <class Estimate>
+  ChosenEmitter choose_below(std::uint32_t node, float choice, const Estimate& estimate) const;
 
   struct Shape {
     Vec3 middle, normal;
@@ -100,8 +105,7 @@ class EmitterTree {
   const Visibility* visibility_;
   const World* world_;
   std::vector<EmittingSide> emitters_;
-  std::vector<Shape> shapes_;            // of each emitter
-  std::vector<float> cumulative_power_;  // after each emitter, over all
+  std::vector<Shape> shapes_;  // of each emitter
   std::vector<Node> nodes_;
 };
 

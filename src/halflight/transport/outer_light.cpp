@@ -31,19 +31,11 @@ Rgb sky_irradiance(const Visibility& visibility, const Vec3& x, const Vec3& n, i
   const Frame frame = Frame::from_normal(n);
   const Vec3 from = world.rays.lift(x, n);
   const auto angle_of = [](float rays) { return std::sqrt(2.f * kPi / rays); };  // between rays
-  if (samples >= kLeastAdaptiveRays)
-    return kPi * world.scene.sky *
-           adaptive_cosine_mean(samples, shift, [&](const Vec3& w, float rays) {
-             return Rgb(visibility.transmittance_to_sky(from, frame.to_world(w), feature_size,
-                                                        angle_of(rays)));
-           });
-  const float angle = angle_of(static_cast<float>(samples));
-  float open = 0.f;
-  for (int k = 0; k < samples; ++k) {
-    const Vec3 w = cosine_hemisphere(r2_sequence(static_cast<std::uint32_t>(k), shift));
-    open += visibility.transmittance_to_sky(from, frame.to_world(w), feature_size, angle);
-  }
-  return kPi * world.scene.sky * (open / static_cast<float>(samples));
+  return kPi * world.scene.sky *
+         adaptive_cosine_mean(samples, shift, [&](const Vec3& w, float rays) {
+           return Rgb(visibility.transmittance_to_sky(from, frame.to_world(w), feature_size,
+                                                      angle_of(rays)));
+         });
 }
 
 }  // namespace halflight

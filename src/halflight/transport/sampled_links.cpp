@@ -11,6 +11,12 @@ namespace {
 constexpr std::uint32_t kFacingAttempts = 16;
 constexpr float kLeastShareOfRays = 0.125f;  // of a small receiver
 
+int fewer_for_small(int rays, float area, const SampledLinkOptions& options) {
+  if (!(area < options.area_of_all_rays)) return rays;
+  const float share = std::max(kLeastShareOfRays, std::sqrt(area / options.area_of_all_rays));
+  return std::max(1, static_cast<int>(share * static_cast<float>(rays)));
+}
+
 // Angle between neighbours among n rays that share a solid angle.
 float between_rays(float solid_angle, int n) {
   return std::sqrt(solid_angle / static_cast<float>(n));
@@ -95,7 +101,7 @@ float concentration(const ClusterVisibility* inside, ElementId cluster, const Ve
 void sample_cluster(const ElementTree& tree, const RayScene& rays,
                     const IdVector<ElementId, float>& opacity, ElementId cluster,
                     const SampledLinkOptions& options, std::vector<ReceiverLink>& links) {
-  const int n = rays_of(tree, cluster, options.rays_per_cluster, options);
+  const int n = rays_of(tree, cluster, options);
   const Vec2 shift = random_shift(hash(cluster.value, 31));
   RayTally tally{links};
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
@@ -124,8 +130,8 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
   const World& world = visibility.world();
   const Element& c = tree[cluster];
   const float s = options.feature_size;
-  const auto n =
-      static_cast<std::uint32_t>(rays_of(tree, cluster, options.shadow_rays_per_cluster, options));
+  const auto n = static_cast<std::uint32_t>(
+      fewer_for_small(options.shadow_rays_per_cluster, tree[cluster].area, options));
   const float share = 1.f / static_cast<float>(n);
   DirectLight light;
   const auto add = [&](std::vector<Arrival>& to, const Vec3& w, const Rgb& facing) {
@@ -191,12 +197,9 @@ std::vector<ElementId> choose_receivers(const ElementTree& tree, std::vector<Ele
   return receivers;
 }
 
-int rays_of(const ElementTree& tree, ElementId receiver, int rays,
-            const SampledLinkOptions& options) {
-  if (!(tree[receiver].area < options.area_of_all_rays)) return rays;
-  const float share =
-      std::max(kLeastShareOfRays, std::sqrt(tree[receiver].area / options.area_of_all_rays));
-  return std::max(1, static_cast<int>(share * static_cast<float>(rays)));
+int rays_of(const ElementTree& tree, ElementId receiver, const SampledLinkOptions& options) {
+  const int all = tree[receiver].is_cluster() ? options.rays_per_cluster : options.rays_per_cell;
+  return fewer_for_small(all, tree[receiver].area, options);
 }
 
 std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& rays,
@@ -209,8 +212,7 @@ std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& 
         if (tree[e].is_cluster())
           sample_cluster(tree, rays, opacity, e, options, links);
         else
-          sample_cell(tree, rays, opacity, e, rays_of(tree, e, options.rays_per_cell, options),
-                      links);
+          sample_cell(tree, rays, opacity, e, rays_of(tree, e, options), links);
       });
 }
 

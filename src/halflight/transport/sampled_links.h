@@ -35,9 +35,8 @@ struct SampledLinkOptions {
 std::vector<ElementId> choose_receivers(const ElementTree& tree, std::vector<ElementId> below,
                                         const IdVector<ElementId, float>& largest_diameter);
 
-// Of the rays above, what a receiver takes.
-int rays_of(const ElementTree& tree, ElementId receiver, int rays,
-            const SampledLinkOptions& options);
+// That a receiver shoots: so many links it gets at most.
+int rays_of(const ElementTree& tree, ElementId receiver, const SampledLinkOptions& options);
 
 // A ray stops in a cell in proportion to the cell's opacity, by which radiosity is already reduced:
 // the weight is divided by it. In receiver order, each receiver's links in ray order:
