@@ -22,7 +22,7 @@ Bits solve_crowd(LinkMaker links, int threads) {
   const SolverState state =
       testing::solve(loose_triangles_scene(p), testing::options_of(links, 0.3f, 0.2f));
   Bits bits{state.radiosity.raw(), state.irradiance.raw(), {}, state.link_total()};
-  const SolutionReader reader(state, kPixelReading);
+  const SolutionReader reader(state, kMeshReading);
   for (const Reading& r : reader(scatter_points(state, 50)))
     bits.readings.push_back(r.irradiance());
   set_thread_count(0);

@@ -210,13 +210,13 @@ TEST(EmitterTreeLight, IsPiLWhereverOneLooksInAFurnace) {
   const DirectLightOptions few_rays{
       .shadow_rays = 2, .penumbra_rays = 4, .largest_group_share = 0.1f, .smallest_angle = 0.01f};
   for (const auto& [options, tolerance] :
-       {std::pair(DirectLightOptions{}, 0.01), std::pair(few_rays, 0.02)}) {
+       {std::pair(DirectLightOptions{}, 0.005), std::pair(few_rays, 0.01)}) {
     double sum = 0.0;
-    const auto points = scatter_points(state, 2000);
+    const auto points = scatter_points(state, 20000);
     for (std::size_t i = 0; i < points.size(); ++i)
       sum += static_cast<double>(
           emitters.irradiance(points[i].position, points[i].normal, options, random_shift(i)).g);
-    EXPECT_NEAR(sum / 2000.0 / static_cast<double>(kPi), 1.0, tolerance);
+    EXPECT_NEAR(sum / 20000.0 / static_cast<double>(kPi), 1.0, tolerance);
   }
 }
 

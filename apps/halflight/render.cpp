@@ -85,12 +85,7 @@ Result<Image> solved_image(const RenderArguments& arguments,
       checkpoint ? restore(*checkpoint, world) : solve(arguments, world);
   if (!solved) return tl::unexpected(solved.error());
   const SolverState& state = *solved;
-  const SolutionReader reader(state, kMeshReading);
-  const LitMesh mesh = build_lit_mesh(
-      world->scene, world->geometry,
-      [&](std::span<const ReadingPoint> points) { return reader(points); }, lit_mesh_options(state),
-      progress);
-  return solution_image(state, SolutionReader(state, kPixelReading), mesh,
+  return solution_image(state, lit_mesh_options(state),
                         CameraRays(view.camera, view.width, view.height), view.width, view.height,
                         arguments.samples_per_pixel, progress);
 }

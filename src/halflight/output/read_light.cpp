@@ -18,40 +18,55 @@ constexpr float kFinestEdge = 1e-3f;  // of the scene's diagonal
 constexpr float kErrorOfPlainReading = 0.05f;
 // Of an emitter that a sensor sees through a small opening, few rays would meet anything.
 constexpr int kSensorShadowRays = 32;
-constexpr int kSensorPenumbraRays = 512;
+constexpr int kSensorPenumbraRays = 1024;
 
-// Whole surfaces (none that needed cells) that reflect much more light than others.
-std::vector<EmittingSide> find_bright_reflectors(const SolverState& state,
-                                                 IdVector<SideId, std::uint8_t>& is_bright) {
-  const ElementTree& tree = state.tree;
-  const Geometry& g = state.world->geometry;
-  double power = 0.0, area = 0.0;
-  for (std::size_t i = 0; i < tree.size(); ++i) {
+struct ReflectedPower {
+  IdVector<SideId, double> of_sides;  // W, average of the channels
+  double mean = 0.0;                  // per area of the whole scene, W/m2
+};
+
+ReflectedPower reflected_power(const SolverState& state) {
+  ReflectedPower power;
+  power.of_sides = IdVector<SideId, double>(2 * state.surfaces->surfaces.size(), 0.0);
+  double sum = 0.0, area = 0.0;
+  for (std::size_t i = 0; i < state.tree.size(); ++i) {
     const ElementId e(i);
-    if (!tree[e].is_leaf_cell()) continue;
+    const Element& cell = state.tree[e];
+    if (!cell.is_leaf_cell()) continue;
     const float reflected = average(state.reflectance[e] * state.irradiance[e]);
     if (!(reflected > 0.f)) continue;
-    power += static_cast<double>(tree[e].area * reflected);
-    area += static_cast<double>(tree[e].area);
+    power.of_sides[cell.side] += static_cast<double>(cell.area * reflected);
+    sum += static_cast<double>(cell.area * reflected);
+    area += static_cast<double>(cell.area);
   }
-  is_bright = IdVector<SideId, std::uint8_t>(2 * state.surfaces->surfaces.size(), 0);
+  power.mean = area > 0.0 ? sum / area : 0.0;
+  return power;
+}
+
+// Surfaces that reflect much more light than others.
+std::vector<EmittingSide> find_bright_reflectors(const SolverState& state,
+                                                 const RadianceAt& reflected_radiance,
+                                                 IdVector<SideId, std::uint8_t>& is_bright) {
+  const ReflectedPower power = reflected_power(state);
+  is_bright = IdVector<SideId, std::uint8_t>(power.of_sides.size(), 0);
   std::vector<EmittingSide> bright;
-  const float limit = area > 0.0 ? kBright * static_cast<float>(power / area) : kInfinity;
   for (std::size_t i = 0; i < is_bright.size(); ++i) {
     const SideId side(i);
-    const ElementId e = tree.side_root(side);
-    if (!e.valid() || !tree[e].is_leaf()) continue;
-    const Rgb reflected = state.reflectance[e] * state.irradiance[e];
-    if (!(average(reflected) > limit)) continue;
+    const ElementId cell = state.tree.side_root(side);
+    if (!cell.valid() ||
+        !(power.of_sides[side] > kBright * power.mean * static_cast<double>(state.tree[cell].area)))
+      continue;
     is_bright[side] = 1;
     const Surface& s = (*state.surfaces)[side];
     for (std::uint32_t k = 0; k < s.triangle_count; ++k) {
       EmittingSide emitter;
       emitter.triangle = state.surfaces->triangles[s.first_triangle + k];
       emitter.back = is_back(side);
-      emitter.radiance = reflected / kPi;
-      emitter.power = average(emitter.radiance) * g.area(emitter.triangle);
-      bright.push_back(emitter);
+      emitter.varies = !state.tree[cell].is_leaf();
+      emitter.radiance = emitter.varies ? mean_radiance(emitter, reflected_radiance)
+                                        : state.reflectance[cell] * state.irradiance[cell] / kPi;
+      emitter.power = average(emitter.radiance) * state.world->geometry.area(emitter.triangle);
+      if (emitter.power > 0.f) bright.push_back(emitter);
     }
   }
   return bright;
@@ -93,8 +108,9 @@ SolutionReader::SolutionReader(const SolverState& state, const ReadOptions& opti
     : state_(&state),
       options_(with_feature_size(options, state.options.feature_size)),
       emitters_(*state.visibility, find_emitters(*state.world)),
-      bright_(*state.visibility, find_bright_reflectors(state, is_bright_)),
-      irradiance_(state) {
+      irradiance_(state),
+      bright_(*state.visibility, find_bright_reflectors(state, reflected_radiance(), is_bright_),
+              reflected_radiance()) {
   if (options.gather_rays == 0) indirect_.emplace(state.tree, indirect_irradiance(state));
 }
 
@@ -111,6 +127,13 @@ Rgb SolutionReader::reflected_radiosity(const RayHit& hit) const {
   if (!leaf.valid()) return Rgb(0.f);
   return reflectance_at(world.scene, world.geometry, hit.triangle, hit.barycentric) *
          irradiance_.at(leaf, hit_position(world.geometry, hit));
+}
+
+RadianceAt SolutionReader::reflected_radiance() const {
+  return [this](const EmittingSide& e, Vec2 barycentric) {
+    const RayHit there{.triangle = e.triangle, .barycentric = barycentric, .front = !e.back};
+    return reflected_radiosity(there) / kPi;
+  };
 }
 
 Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
@@ -188,6 +211,18 @@ std::vector<Reading> SolutionReader::operator()(std::span<const ReadingPoint> po
   parallel_for(points.size(), 16, [&](std::size_t i) {
     const bool at_once = progress.cancelled() || matters_to_nobody(points[i]);
     readings[i] = at_once ? of_cell(points[i]) : read(points[i]);
+  });
+  return readings;
+}
+
+std::vector<Reading> SolutionReader::indirect(std::span<const ReadingPoint> points,
+                                              const Progress& progress) const {
+  std::vector<Reading> readings(points.size());
+  parallel_for(points.size(), 16, [&](std::size_t i) {
+    if (points[i].direct_only) return;
+    const bool at_once = progress.cancelled() || matters_to_nobody(points[i]);
+    readings[i].indirect =
+        at_once ? of_cell(points[i]).indirect : gather(points[i].position, points[i].normal);
   });
   return readings;
 }

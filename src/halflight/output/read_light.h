@@ -19,12 +19,9 @@ struct ReadOptions {
   DirectLightOptions direct;
 };
 
-// For the many vertices of a lit mesh, and for pixels, several of which share a place.
+// For the many vertices of a lit mesh, and for pixels.
 inline constexpr ReadOptions kMeshReading{
     .gather_rays = 128,
-    .direct = {.shadow_rays = 8, .penumbra_rays = 24, .largest_group_share = 0.03f}};
-inline constexpr ReadOptions kPixelReading{
-    .gather_rays = 32,
     .direct = {.shadow_rays = 8, .penumbra_rays = 24, .largest_group_share = 0.03f}};
 
 // Length of edges that a lit mesh need not split: half the smallest feature size of any place.
@@ -37,11 +34,16 @@ class SolutionReader {
  public:
   // Refers to the state, which must outlive the reader.
   SolutionReader(const SolverState& state, const ReadOptions& options);
+  SolutionReader(const SolutionReader&) = delete;
+  SolutionReader& operator=(const SolutionReader&) = delete;
 
   Reading read(const ReadingPoint& point) const;
   // In parallel. Once the progress is cancelled what is left is taken from the cells.
   std::vector<Reading> operator()(std::span<const ReadingPoint> points,
                                   const Progress& progress = {}) const;
+  // The same without the direct part, for pictures, which read that in every pixel.
+  std::vector<Reading> indirect(std::span<const ReadingPoint> points,
+                                const Progress& progress = {}) const;
   // The light of the cell that the point lies in, without a ray: blocky, and at once.
   Reading of_cell(const ReadingPoint& point) const;
 
@@ -62,17 +64,18 @@ class SolutionReader {
   ElementId leaf_at(const ReadingPoint& point) const;
   Reading read_from_cell(const ReadingPoint& point) const;
   bool matters_to_nobody(const ReadingPoint& point) const;
+  RadianceAt reflected_radiance() const;  // refers to the reader
   // Light reflected at least once.
   Rgb gather(const Vec3& x, const Vec3& n) const;
 
   const SolverState* state_;
   ReadOptions options_;
   EmitterTree emitters_;
-  // Small surfaces so bright by reflection (insides of lamps) that the few rays of a gather that
-  // meet them would show: they are read like emitters, and the gather leaves them out.
+  SmoothIrradiance irradiance_;
+  // Surfaces so bright by reflection (insides of lamps) that the few rays of a gather that meet
+  // them would show: they are read like emitters, and the gather leaves them out.
   IdVector<SideId, std::uint8_t> is_bright_;
   EmitterTree bright_;
-  SmoothIrradiance irradiance_;
   std::optional<SmoothIrradiance> indirect_;  // where there are no rays to gather with
 };
 

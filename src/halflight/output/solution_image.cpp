@@ -1,5 +1,6 @@
 #include "halflight/output/solution_image.h"
 
+#include <atomic>
 #include <memory>
 
 #include "halflight/base/parallel.h"
@@ -58,12 +59,93 @@ Scene opaque_scene() {
   return scene;
 }
 
+// Rays through the pixels of a picture, the same ones each time, and what they meet.
+class PictureRays {
+ public:
+  PictureRays(const World& world, const CameraRays& camera, int width, int height, int samples)
+      : world_(world),
+        camera_(camera),
+        columns_(static_cast<std::size_t>(width)),
+        pixels_(columns_ * static_cast<std::size_t>(height)),
+        samples_(samples) {}
+
+  // Mean over the rays of each pixel of the light that arrives, where `leaving` gives that of a
+  // surface by its hit and the ray's place in the pixel. Panes of glass one behind the other each
+  // add their share. In parallel; ends early once the progress is cancelled.
+  template <class Leaving, class Done>
+  void trace(const Progress& progress, const char* phase, const Leaving& leaving,
+             const Done& done) const {
+    const std::size_t band = kRowsPerReport * columns_;
+    for (std::size_t first = 0; first < pixels_ && !progress.cancelled(); first += band) {
+      const std::size_t count = std::min(band, pixels_ - first);
+      parallel_for(count, 16, [&](std::size_t i) {
+        const std::size_t pixel = first + i;
+        const Vec2 corner(static_cast<float>(pixel % columns_),
+                          static_cast<float>(pixel / columns_));
+        Rgb sum(0.f);
+        for (int k = 0; k < samples_; ++k) {
+          const Vec2 shift = r2_sequence(static_cast<std::uint32_t>(k));
+          sum += radiance(camera_.through(corner + shift),
+                          [&](const RayHit& hit) { return leaving(hit, shift); });
+        }
+        done(pixel, sum / static_cast<float>(samples_));
+      });
+      progress.report(phase, static_cast<double>(first + count) / static_cast<double>(pixels_));
+    }
+  }
+
+ private:
+  template <class Leaving>
+  Rgb radiance(const CameraRay& ray, const Leaving& leaving) const {
+    Rgb sum(0.f);
+    float left = 1.f;  // share of what lies behind that is seen
+    Vec3 origin = ray.origin;
+    for (int pane = 0; pane < kMostPanes && left > kBlockedBelow; ++pane) {
+      const auto hit = world_.rays.first_surface(origin, ray.direction, kInfinity);
+      if (!hit) return sum + left * world_.scene.sky;
+      const float opacity =
+          opacity_at(world_.scene, world_.geometry, hit->triangle, hit->barycentric);
+      sum += left * opacity * leaving(*hit);
+      left *= 1.f - opacity;
+      origin =
+          world_.rays.lift(hit_position(world_.geometry, *hit), -hit_normal(world_.geometry, *hit));
+    }
+    return sum;
+  }
+
+  const World& world_;
+  const CameraRays& camera_;
+  std::size_t columns_, pixels_;
+  int samples_;
+};
+
+IdVector<TriangleId, ShownSides> sides_seen(const PictureRays& rays, std::size_t triangles,
+                                            const Progress& progress) {
+  IdVector<TriangleId, ShownSides> seen(triangles, {.front = false, .back = false});
+  rays.trace(
+      progress, "view",
+      [&](const RayHit& hit, Vec2) {
+        ShownSides& sides = seen[hit.triangle];
+        std::atomic_ref(hit.front ? sides.front : sides.back)
+            .store(true, std::memory_order_relaxed);
+        return Rgb(0.f);
+      },
+      [](std::size_t, const Rgb&) {});
+  return seen;
+}
+
 }  // namespace
 
-Image solution_image(const SolverState& state, const SolutionReader& reader, const LitMesh& mesh,
+Image solution_image(const SolverState& state, const LitMeshOptions& mesh_options,
                      const CameraRays& camera, int width, int height, int samples_per_pixel,
                      const Progress& progress) {
   const World& world = *state.world;
+  const PictureRays rays(world, camera, width, height, samples_per_pixel);
+  const SolutionReader reader(state, kMeshReading);
+  const LitMesh mesh = build_lit_mesh(
+      world.scene, world.geometry, sides_seen(rays, world.geometry.triangles.size(), progress),
+      [&](std::span<const ReadingPoint> points) { return reader.indirect(points, progress); },
+      mesh_options, progress);
   const Scene search = opaque_scene();
   const LitSide front(search, mesh, false), back(search, mesh, true);
 
@@ -79,43 +161,9 @@ Image solution_image(const SolverState& state, const SolutionReader& reader, con
       result += emission_at(world.scene, world.geometry, hit.triangle, hit.barycentric);
     return result;
   };
-  // Panes of glass one behind the other each add their share.
-  const auto radiance = [&](const CameraRay& ray, Vec2 shift) {
-    Rgb sum(0.f);
-    float left = 1.f;  // share of what lies behind that is seen
-    Vec3 origin = ray.origin;
-    for (int pane = 0; pane < kMostPanes && left > kBlockedBelow; ++pane) {
-      const auto hit = world.rays.first_surface(origin, ray.direction, kInfinity);
-      if (!hit) return sum + left * world.scene.sky;
-      const float opacity =
-          opacity_at(world.scene, world.geometry, hit->triangle, hit->barycentric);
-      sum += left * opacity * leaving(*hit, shift);
-      left *= 1.f - opacity;
-      origin =
-          world.rays.lift(hit_position(world.geometry, *hit), -hit_normal(world.geometry, *hit));
-    }
-    return sum;
-  };
-
   Image image(width, height);
-  const auto columns = static_cast<std::size_t>(width);
-  const std::size_t band = kRowsPerReport * columns;
-  for (std::size_t first = 0; first < image.pixels.size() && !progress.cancelled(); first += band) {
-    const std::size_t count = std::min(band, image.pixels.size() - first);
-    parallel_for(count, 16, [&](std::size_t i) {
-      const std::size_t pixel = first + i;
-      const std::size_t row = pixel / columns;
-      const Vec2 corner(static_cast<float>(pixel % columns), static_cast<float>(row));
-      Rgb sum(0.f);
-      for (int k = 0; k < samples_per_pixel; ++k) {
-        const Vec2 shift = r2_sequence(static_cast<std::uint32_t>(k));
-        sum += radiance(camera.through(corner + shift), shift);
-      }
-      image.pixels[pixel] = sum / static_cast<float>(samples_per_pixel);
-    });
-    progress.report("picture",
-                    static_cast<double>(first + count) / static_cast<double>(image.pixels.size()));
-  }
+  rays.trace(progress, "picture", leaving,
+             [&](std::size_t pixel, const Rgb& light) { image.pixels[pixel] = light; });
   return image;
 }
 

@@ -10,9 +10,9 @@
 namespace halflight {
 
 // Radiance that reaches the camera, box-filtered over each pixel: direct light read afresh where
-// each ray lands, indirect light interpolated over the lit mesh. Sky and emitters are visible.
-Image solution_image(const SolverState& state, const SolutionReader& reader, const LitMesh& mesh,
-                     const CameraRays& camera, int width, int height, int samples_per_pixel,
-                     const Progress& progress);
+// each ray lands, indirect light interpolated over a lit mesh of what these rays meet. Sky and
+// emitters are visible.
+Image solution_image(const SolverState& state, const LitMeshOptions& mesh, const CameraRays& camera,
+                     int width, int height, int samples_per_pixel, const Progress& progress);
 
 }  // namespace halflight

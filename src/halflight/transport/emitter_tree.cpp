@@ -29,7 +29,7 @@ constexpr std::uint32_t kChoices = ~0u;  // a stream of samples beside those of 
 // Directions below the horizon keep this much of the cosine that samples follow.
 constexpr float kLeastCosine = 0.01f;
 
-constexpr std::uint32_t kTextureSamples = 16;
+constexpr std::uint32_t kPlacesOfMean = 16;
 
 // Cosine of the angle between two directions less a third one's opening, never below -1.
 float cosine_of_difference(float cos_a, float cos_b) {
@@ -46,9 +46,11 @@ Vec2 other_shift(Vec2 shift, std::uint32_t emitter) {
 }
 
 // A translucent surface shines with the share of it that is there.
-Rgb radiance_at(const World& world, TriangleId t, Vec2 barycentric) {
-  return emission_at(world.scene, world.geometry, t, barycentric) *
-         opacity_at(world.scene, world.geometry, t, barycentric);
+RadianceAt emitted_radiance(const World& world) {
+  return [&world](const EmittingSide& e, Vec2 barycentric) {
+    return emission_at(world.scene, world.geometry, e.triangle, barycentric) *
+           opacity_at(world.scene, world.geometry, e.triangle, barycentric);
+  };
 }
 bool varies(const Material& m) {
   const bool holes = m.alpha_texture.valid() || m.reflectance_texture.valid();
@@ -65,8 +67,17 @@ float point_kernel(const Vec3& x, const Vec3& n, const Vec3& y, const Vec3& m) {
 
 }  // namespace
 
+Rgb mean_radiance(const EmittingSide& emitter, const RadianceAt& radiance_at) {
+  const std::uint32_t places = emitter.varies ? kPlacesOfMean : 1;
+  Rgb sum(0.f);
+  for (std::uint32_t k = 0; k < places; ++k)
+    sum += radiance_at(emitter, uniform_triangle(r2_sequence(k)));
+  return sum / static_cast<float>(places);
+}
+
 std::vector<EmittingSide> find_emitters(const World& world) {
   const Geometry& g = world.geometry;
+  const RadianceAt emitted = emitted_radiance(world);
   std::vector<EmittingSide> emitters;
   for (std::uint32_t i = 0; i < g.triangles.size(); ++i) {
     const TriangleId t(i);
@@ -74,11 +85,8 @@ std::vector<EmittingSide> find_emitters(const World& world) {
     if (!m.emits()) continue;
     EmittingSide e;
     e.triangle = t;
-    e.textured = varies(m);
-    const std::uint32_t samples = e.textured ? kTextureSamples : 1;
-    for (std::uint32_t k = 0; k < samples; ++k)
-      e.radiance +=
-          radiance_at(world, t, uniform_triangle(r2_sequence(k))) / static_cast<float>(samples);
+    e.varies = varies(m);
+    e.radiance = mean_radiance(e, emitted);
     e.power = average(e.radiance) * g.area(t);
     if (!(e.power > 0.f)) continue;
     emitters.push_back(e);
@@ -89,8 +97,12 @@ std::vector<EmittingSide> find_emitters(const World& world) {
   return emitters;
 }
 
-EmitterTree::EmitterTree(const Visibility& visibility, std::vector<EmittingSide> emitters)
-    : visibility_(&visibility), world_(&visibility.world()), emitters_(std::move(emitters)) {
+EmitterTree::EmitterTree(const Visibility& visibility, std::vector<EmittingSide> emitters,
+                         RadianceAt radiance_at)
+    : visibility_(&visibility),
+      world_(&visibility.world()),
+      emitters_(std::move(emitters)),
+      radiance_at_(radiance_at ? std::move(radiance_at) : emitted_radiance(*world_)) {
   if (emitters_.empty()) return;
   nodes_.reserve(2 * emitters_.size());
   build(0, static_cast<std::uint32_t>(emitters_.size()));
@@ -268,13 +280,14 @@ Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3&
   // from counts as it should, and none is lost by a place below the horizon.
   const int candidates =
       std::max(1, (large ? kLeastPlacesInView : kLeastPlaces) / std::max(1, rays));
-  const Vec2 choice_shift = other_shift(shift, emitter);
+  // Emitters that take few rays each must not all be seen at the same of their places.
+  const Vec2 own_shift = other_shift(shift, emitter);
   const auto choose_one = [&](int ray) {
-    float choice = r2_sequence(static_cast<std::uint32_t>(ray), choice_shift).x;
+    float choice = r2_sequence(static_cast<std::uint32_t>(ray), other_shift(own_shift, kChoices)).x;
     Place chosen{Vec2(0.f), 0.f};
     for (int k = 0; k < candidates; ++k) {
       const auto index = static_cast<std::uint32_t>(ray * candidates + k);
-      const Place place = choose(r2_sequence(index, shift));
+      const Place place = choose(r2_sequence(index, own_shift));
       if (!(place.kernel > 0.f)) continue;
       chosen.kernel += place.kernel;
       // Keeps the newcomer with probability share, and stretches the choice to be used again.
@@ -294,7 +307,7 @@ Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3&
       const float visible = kernel * seen(emitter, from, at(b), feature_size);
       seen_sum += visible;
       squares += visible * visible / kernel;
-      seen_radiance += visible * (e.textured ? radiance_at(*world_, e.triangle, b) : e.radiance);
+      seen_radiance += visible * (e.varies ? radiance_at_(e, b) : e.radiance);
     }
   };
   shoot(rays);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,11 +28,17 @@ struct DirectLightOptions {
 // One side of a triangle that shines with a radiance of its own.
 struct EmittingSide {
   TriangleId triangle;
-  bool back = false;  // from the clockwise side
-  Rgb radiance{0.f};  // mean over the triangle, times its opacity
-  bool textured = false;
-  float power = 0.f;  // average(radiance) * area
+  bool back = false;    // from the clockwise side
+  Rgb radiance{0.f};    // mean over the triangle, times its opacity
+  bool varies = false;  // over the triangle
+  float power = 0.f;    // average(radiance) * area
 };
+
+// Radiance of one place on an emitter that varies, times its opacity.
+using RadianceAt = std::function<Rgb(const EmittingSide&, Vec2 barycentric)>;
+
+// Mean over places on a triangle, every time the same ones.
+Rgb mean_radiance(const EmittingSide& emitter, const RadianceAt& radiance_at);
 
 // All emitting sides of the scene's triangles.
 std::vector<EmittingSide> find_emitters(const World& world);
@@ -46,8 +53,9 @@ struct EmitterPoint {
 
 class EmitterTree {
  public:
-  // Refers to the visibility.
-  EmitterTree(const Visibility& visibility, std::vector<EmittingSide> emitters);
+  // Refers to the visibility. By default what varies is the emission of the scene.
+  EmitterTree(const Visibility& visibility, std::vector<EmittingSide> emitters,
+              RadianceAt radiance_at = {});
   bool empty() const { return emitters_.empty(); }
 
   // Irradiance at x with unit normal n from all emitting surfaces, shadows by the visibility. With
@@ -105,6 +113,7 @@ class EmitterTree {
   const Visibility* visibility_;
   const World* world_;
   std::vector<EmittingSide> emitters_;
+  RadianceAt radiance_at_;
   std::vector<Shape> shapes_;  // of each emitter
   std::vector<Node> nodes_;
 };

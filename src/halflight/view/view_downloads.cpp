@@ -52,14 +52,18 @@ Result<std::string> bytes_of(const char* name, const Write& write) {
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-LitMesh sharp_mesh(const SolverState& state) {
-  const SolutionReader reader(state, kMeshReading);
+LitMeshOptions mesh_options(const SolverState& state) {
   LitMeshOptions options;
   options.feature_size = state.options.feature_size;
   options.finest = finest_mesh_edge(state);
+  return options;
+}
+
+LitMesh sharp_mesh(const SolverState& state) {
+  const SolutionReader reader(state, kMeshReading);
   return build_lit_mesh(
       state.world->scene, state.world->geometry,
-      [&](std::span<const ReadingPoint> points) { return reader(points); }, options);
+      [&](std::span<const ReadingPoint> points) { return reader(points); }, mesh_options(state));
 }
 
 }  // namespace
@@ -78,13 +82,11 @@ Result<std::string> lit_glb(LiveSolution& live) {
 
 Result<std::string> hdr_picture(LiveSolution& live, const ViewOfInterest& view) {
   const SolverState& state = *live.scene.state;
-  std::optional<LitMesh> made;
-  if (!live.sharp) made = sharp_mesh(state);
   const int width = std::min(view.width, kLargestPicture);
   const int height = std::min(view.height, kLargestPicture);
-  const Image image = solution_image(
-      state, SolutionReader(state, kPixelReading), live.sharp ? *live.sharp : *made,
-      CameraRays(view.camera, width, height), width, height, kSamplesPerPixel, Progress());
+  const Image image =
+      solution_image(state, mesh_options(state), CameraRays(view.camera, width, height), width,
+                     height, kSamplesPerPixel, Progress());
   return bytes_of("view.exr",
                   [&](const std::filesystem::path& file) { return write_image(file, image); });
 }
