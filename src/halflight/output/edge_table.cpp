@@ -9,7 +9,7 @@ namespace {
 constexpr float kDarkest = 0.1f;
 constexpr float kUnlit = 1e-4f;
 // Indirect light off the straight line by less than this share is interpolated from there on.
-constexpr float kSmoothIndirect = 0.02f;
+constexpr float kSmoothIndirect = 0.04f;
 
 template <class IdT>
 std::uint64_t pair_key(IdT a, IdT b) {

@@ -19,10 +19,13 @@ struct ReadOptions {
   DirectLightOptions direct;
 };
 
-// For the many vertices of a lit mesh, and for pixels.
+// For the many vertices of a lit mesh. Fewer gather rays make more vertices, by their noise.
 inline constexpr ReadOptions kMeshReading{
-    .gather_rays = 128,
+    .gather_rays = 196,
     .direct = {.shadow_rays = 8, .penumbra_rays = 24, .largest_group_share = 0.03f}};
+inline constexpr ReadOptions kPictureReading{
+    .gather_rays = 256,
+    .direct = {.shadow_rays = 8, .penumbra_rays = 48, .largest_group_share = 0.03f}};
 
 // Length of edges that a lit mesh need not split: half the smallest feature size of any place.
 float finest_mesh_edge(const SolverState& state);

@@ -141,7 +141,7 @@ Image solution_image(const SolverState& state, const LitMeshOptions& mesh_option
                      const Progress& progress) {
   const World& world = *state.world;
   const PictureRays rays(world, camera, width, height, samples_per_pixel);
-  const SolutionReader reader(state, kMeshReading);
+  const SolutionReader reader(state, kPictureReading);
   const LitMesh mesh = build_lit_mesh(
       world.scene, world.geometry, sides_seen(rays, world.geometry.triangles.size(), progress),
       [&](std::span<const ReadingPoint> points) { return reader.indirect(points, progress); },
