@@ -9,8 +9,9 @@ halflight=build/release/bin/halflight
 mkdir -p out
 
 "$halflight" scene office -o out/office.glb
-"$halflight" solve out/office.glb -o out/demo.glb --report out/demo.json
-"$halflight" render out/office.glb --camera desk -o out/demo.png
+"$halflight" solve out/office.glb -o out/demo.glb --report out/demo.json \
+  --checkpoint out/demo.ckpt
+"$halflight" render out/demo.ckpt --camera desk -o out/demo.png
 
 echo "Picture:         out/demo.png"
 echo "Lit scene:       out/demo.glb (opens in any glTF viewer)"

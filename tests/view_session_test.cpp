@@ -50,8 +50,9 @@ std::vector<T> array_of(const std::string& packet, const char* name) {
   std::memcpy(&length, packet.data() + 4, 4);
   const json place = json_of(packet)["arrays"][name];
   std::vector<T> values(place["count"].get<std::size_t>());
-  std::memcpy(values.data(), packet.data() + 8 + length + place["offset"].get<std::size_t>(),
-              4 * values.size());
+  if (!values.empty())
+    std::memcpy(values.data(), packet.data() + 8 + length + place["offset"].get<std::size_t>(),
+                4 * values.size());
   return values;
 }
 

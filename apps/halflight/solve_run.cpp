@@ -78,7 +78,8 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
   SolveOutcome outcome;
   // Whenever the time is over, all of the light shall be there. Rounds that memory cuts short are
   // never made finer.
-  if (deadline.set() && state.history.empty() && state.options.memory == 0) begin_coarsely(state);
+  const bool coarsely_first = deadline.set() && state.options.memory == 0;
+  if (coarsely_first && state.history.empty()) begin_coarsely(state);
   const auto run = [&] {
     return run_schedule(state, goals, deadline, progress, after_iteration) &&
            state.schedule.short_of_memory == 0;
@@ -91,7 +92,7 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
   outcome.error = probes.measure(state);
   if (!goals.error) return outcome;
   // A solve that was resumed has some of its rounds behind it.
-  const int coarse_rounds = deadline.set() ? 1 : 0;
+  const int coarse_rounds = coarsely_first ? 1 : 0;
   for (int round = std::max<int>(1, state.schedule.round - coarse_rounds);
        outcome.goal_met && outcome.error->relative_rms > *goals.error; ++round) {
     if (round == kMostRounds) {
