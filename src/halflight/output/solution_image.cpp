@@ -80,8 +80,8 @@ class PictureRays {
       const std::size_t count = std::min(band, pixels_ - first);
       parallel_for(count, 16, [&](std::size_t i) {
         const std::size_t pixel = first + i;
-        const Vec2 corner(static_cast<float>(pixel % columns_),
-                          static_cast<float>(pixel / columns_));
+        const std::size_t row = pixel / columns_;
+        const Vec2 corner(static_cast<float>(pixel % columns_), static_cast<float>(row));
         Rgb sum(0.f);
         for (int k = 0; k < samples_; ++k) {
           const Vec2 shift = r2_sequence(static_cast<std::uint32_t>(k));
