@@ -11,11 +11,10 @@ namespace halflight {
 namespace {
 
 constexpr std::size_t kProbes = 512;
-// Of each of the two estimates at a point: to begin with, and by how many times more where they
-// are noisier than wanted, relative to the light there or the mean.
-constexpr std::uint32_t kPaths = 32, kMorePaths = 4;
-constexpr int kRounds = 2;
-constexpr float kNoiseFloor = 0.35f;  // of the estimate, in units of the error that is aimed at
+// A pilot at each point says how many each of the two estimates takes there. It is no part of them:
+// where it misses what is rare, they would as well.
+constexpr int kPilotPaths = 64, kLeastPaths = 32, kMostPaths = 2048;
+constexpr float kNoiseFloor = 0.25f;  // of the estimate, in units of the error that is aimed at
 
 // Where somebody looks.
 std::vector<ReadingPoint> scatter_over_view(const SolverState& state, std::size_t count) {
@@ -71,32 +70,27 @@ std::vector<ReadingPoint> scatter_points(const SolverState& state, std::size_t c
 ErrorProbes::ErrorProbes(const SolverState& state)
     : points_(scatter_in_the_open(state, kProbes)), truths_(points_.size()) {
   const PathTracer tracer(*state.world);
-  const auto trace = [&](std::size_t i, std::uint32_t paths) {
-    const ReadingPoint& p = points_[i];
-    Truth& t = truths_[i];
-    const auto seed = [&](std::uint64_t half) { return hash(i, t.paths, half); };
-    const auto a = tracer.estimate_irradiance(p.position, p.normal, paths, seed(61));
-    const auto b = tracer.estimate_irradiance(p.position, p.normal, paths, seed(67));
-    const float share = static_cast<float>(paths) / static_cast<float>(t.paths + paths);
-    t.first = glm::mix(t.first, a.mean, share);
-    t.second = glm::mix(t.second, b.mean, share);
-    const float noise = average(0.5f * (a.standard_error + b.standard_error));
-    t.noise = std::hypot((1.f - share) * t.noise, share * noise);
-    t.paths += paths;
+  const auto trace = [&](std::size_t i, int paths, std::uint64_t estimate) {
+    return tracer.estimate_irradiance(points_[i].position, points_[i].normal,
+                                      static_cast<std::uint32_t>(paths), hash(i, estimate));
   };
-  parallel_for(points_.size(), 4, [&](std::size_t i) { trace(i, kPaths); });
+  std::vector<float> noise(points_.size());  // of the pilots
+  parallel_for(points_.size(), 4, [&](std::size_t i) {
+    const auto pilot = trace(i, kPilotPaths, 59);
+    truths_[i] = {pilot.mean, pilot.mean};
+    noise[i] = average(pilot.standard_error);
+  });
+  const float mean = mean_irradiance();
   // Noise of n points leaves the fourth root of its variance over n in the estimate.
   const float wanted =
       kNoiseFloor * state.options.error * std::pow(static_cast<float>(points_.size()), 0.25f);
-  std::uint32_t paths = kPaths;
-  for (int round = 0; round < kRounds; ++round) {
-    paths *= kMorePaths;
-    const float mean = mean_irradiance();
-    parallel_for(points_.size(), 1, [&](std::size_t i) {
-      const float scale = std::max(average(truths_[i].mean()), mean);
-      if (truths_[i].noise > wanted * scale) trace(i, paths);
-    });
-  }
+  parallel_for(points_.size(), 1, [&](std::size_t i) {
+    const float scale = std::max(average(truths_[i].mean()), mean);
+    const float excess = scale > 0.f ? noise[i] / (wanted * scale) : 0.f;
+    const float enough = static_cast<float>(kPilotPaths) * excess * excess;
+    const int paths = static_cast<int>(std::clamp(enough, float{kLeastPaths}, float{kMostPaths}));
+    truths_[i] = {trace(i, paths, 61).mean, trace(i, paths, 67).mean};
+  });
 }
 
 float ErrorProbes::mean_irradiance() const {
@@ -123,7 +117,7 @@ EstimatedError ErrorProbes::measure(const SolverState& state) const {
   const auto n = static_cast<double>(points_.size());
   squares /= n;
   const double deviation = std::sqrt(std::max(0.0, squared_squares / n - squares * squares) / n);
-  error.relative_rms = static_cast<float>(std::sqrt(std::max(0.0, squares)));
+  error.relative_rms = static_cast<float>(std::sqrt(std::max(squares, deviation)));
   error.least = static_cast<float>(std::sqrt(deviation));
   return error;
 }

@@ -16,9 +16,9 @@ struct EstimatedError {
   // RMS over the scene's area, or over the picture that is important, of the error of irradiance,
   // relative to the scene's mean irradiance or, where there is more light, to that of the place: a
   // few places inside lamps would outweigh all others.
-  float relative_rms = 0.f;
-  float least = 0.f;  // errors below this drown in the noise of the paths
-  float mean = 0.f;   // irradiance by the paths, W/m2
+  float relative_rms = 0.f;  // not below `least`
+  float least = 0.f;         // errors below this drown in the noise of the paths
+  float mean = 0.f;          // irradiance by the paths, W/m2
 };
 
 // With two independent estimates a, b of the true irradiance at a point, of any noise but without
@@ -34,8 +34,6 @@ class ErrorProbes {
  private:
   struct Truth {
     Rgb first{0.f}, second{0.f};  // independent estimates
-    float noise = 0.f;            // standard error of either
-    std::uint32_t paths = 0;      // of either
     Rgb mean() const { return 0.5f * (first + second); }
   };
   float mean_irradiance() const;
