@@ -16,9 +16,11 @@ constexpr int kLeastSkyRays = 64;
 constexpr float kBright = 5.f;
 constexpr float kFinestEdge = 1e-3f;  // of the scene's diagonal
 constexpr float kErrorOfPlainReading = 0.05f;
+constexpr float kLeastReading = 1.f / 32.f, kMostReading = 8.f;
 // Of an emitter that a sensor sees through a small opening, few rays would meet anything.
 constexpr int kSensorShadowRays = 32;
 constexpr int kSensorPenumbraRays = 1024;
+constexpr int kMostBounces = 4;  // of gather rays that end nearby
 
 struct ReflectedPower {
   IdVector<SideId, double> of_sides;  // W, average of the channels
@@ -87,6 +89,26 @@ IdVector<ElementId, Rgb> indirect_irradiance(const SolverState& state) {
   return indirect;
 }
 
+// Of the average channel of what sampled links bring to leaf cells: of the mean of the rays that
+// each of them is.
+IdVector<ElementId, float> variance_of_sampled_light(const SolverState& state) {
+  IdVector<ElementId, float> variance(state.tree.size(), 0.f);
+  parallel_for(variance.size(), 1024, [&](std::size_t i) {
+    const ElementId e(i);
+    if (!state.tree[e].is_leaf_cell()) return;
+    float sum = 0.f, squares = 0.f;
+    const std::span<const Link> links = state.sampled_links.of(e);
+    for (const Link& l : links) {
+      const float light = l.weight * average(state.radiosity[l.source] - state.exitance[l.source]);
+      sum += light;
+      squares += light * light;
+    }
+    const auto n = static_cast<float>(links.size());
+    if (n > 1.f) variance[e] = std::max(0.f, squares - sum * sum / n) * n / (n - 1.f);
+  });
+  return variance;
+}
+
 }  // namespace
 
 float finest_mesh_edge(const SolverState& state) {
@@ -96,11 +118,15 @@ float finest_mesh_edge(const SolverState& state) {
 }
 
 ReadOptions sensor_reading(const SolverState& state) {
+  const float more =
+      std::clamp(kErrorOfPlainReading / state.options.error, kLeastReading, kMostReading);
+  const auto rays = [&](int plain, int least) {
+    return std::max(least, static_cast<int>(more * static_cast<float>(plain)));
+  };
   ReadOptions options;
-  const float more = std::clamp(kErrorOfPlainReading / state.options.error, 0.25f, 8.f);
-  options.gather_rays = static_cast<int>(more * static_cast<float>(options.gather_rays));
-  options.direct.shadow_rays = kSensorShadowRays;
-  options.direct.penumbra_rays = kSensorPenumbraRays;
+  options.gather_rays = rays(options.gather_rays, 1);
+  options.direct.shadow_rays = std::min(rays(kSensorShadowRays, 8), kSensorShadowRays);
+  options.direct.penumbra_rays = std::min(rays(kSensorPenumbraRays, 32), kSensorPenumbraRays);
   return options;
 }
 
@@ -111,7 +137,8 @@ SolutionReader::SolutionReader(const SolverState& state, const ReadOptions& opti
       irradiance_(state),
       bright_(*state.visibility, find_bright_reflectors(state, reflected_radiance(), is_bright_),
               reflected_radiance()) {
-  if (options.gather_rays == 0) indirect_.emplace(state.tree, indirect_irradiance(state));
+  if (options.gather_rays == 0)
+    indirect_.emplace(state.tree, indirect_irradiance(state), variance_of_sampled_light(state));
 }
 
 Rgb SolutionReader::direct(const Vec3& x, const Vec3& n, Vec2 shift) const {
@@ -137,18 +164,40 @@ RadianceAt SolutionReader::reflected_radiance() const {
 }
 
 Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
+  // Points in the air lie in no cell.
+  const int rays = options_.gather_rays > 0 ? options_.gather_rays : kMeshReading.gather_rays;
+  return gather(x, n, {.rays = rays}) + bright_.irradiance(x, n, options_.direct);
+}
+
+Rgb SolutionReader::gather(const Vec3& x, const Vec3& n, const GatherRays& gathering) const {
   const World& world = *state_->world;
   const Frame frame = Frame::from_normal(n);
   const Vec3 from = world.rays.lift(x, n);
-  // Points in the air lie in no cell.
-  const int rays = options_.gather_rays > 0 ? options_.gather_rays : kMeshReading.gather_rays;
   std::uint32_t index = 0;
-  const auto seen = [&](const Vec3& w, float) {
-    const auto hit = world.rays.closest_hit(from, frame.to_world(w), kInfinity, hash(index++));
-    const bool counts = hit && !is_bright_[state_->surfaces->side_hit(*hit)];
-    return counts ? reflected_radiosity(*hit) : Rgb(0.f);
-  };
-  return adaptive_cosine_mean(rays, Vec2(0.5f), seen) + bright_.irradiance(x, n, options_.direct);
+  return adaptive_cosine_mean(gathering.rays, gathering.shift, [&](const Vec3& w, float) {
+    const std::uint64_t seed = hash(gathering.seed, index++);
+    const auto hit = world.rays.closest_hit(from, frame.to_world(w), kInfinity, seed);
+    if (!hit || is_bright_[state_->surfaces->side_hit(*hit)]) return Rgb(0.f);
+    const ElementId leaf = state_->tree.leaf_hit(*hit);
+    const bool near = leaf.valid() && gathering.bounces < kMostBounces &&
+                      hit->distance < options_.near_hits * state_->tree.cell_size(leaf);
+    return near ? reflected_radiosity_by_path(*hit, seed, gathering.bounces)
+                : reflected_radiosity(*hit);
+  });
+}
+
+Rgb SolutionReader::reflected_radiosity_by_path(const RayHit& hit, std::uint64_t seed,
+                                                int bounces) const {
+  const World& world = *state_->world;
+  const Vec3 y = hit_position(world.geometry, hit), n = hit_normal(world.geometry, hit);
+  const float s = options_.direct.feature_size;
+  const Vec2 shift = random_shift(seed);
+  const Rgb irradiance = emitters_.irradiance_by_one_ray(y, n, shift, s) +
+                         bright_.irradiance_by_one_ray(y, n, shift, s) +
+                         punctual_irradiance(*state_->visibility, y, n, s) +
+                         sky_irradiance(*state_->visibility, y, n, 1, shift, s) +
+                         gather(y, n, {1, random_shift(hash(seed, 1)), seed, bounces + 1});
+  return reflectance_at(world.scene, world.geometry, hit.triangle, hit.barycentric) * irradiance;
 }
 
 Reading SolutionReader::read(const ReadingPoint& point) const {

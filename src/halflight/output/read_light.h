@@ -16,6 +16,9 @@ namespace halflight {
 struct ReadOptions {
   // Of each point's hemisphere. None: indirect light is that of the cell, made linear over it.
   int gather_rays = 1024;
+  // Of a place nearer than this, in sizes of its cell, the cell says little (gaps, corners): gather
+  // rays that end there go on as paths. 0: nowhere.
+  float near_hits = 0.5f;
   DirectLightOptions direct;
 };
 
@@ -70,6 +73,14 @@ class SolutionReader {
   RadianceAt reflected_radiance() const;  // refers to the reader
   // Light reflected at least once.
   Rgb gather(const Vec3& x, const Vec3& n) const;
+  struct GatherRays {
+    int rays = 1;
+    Vec2 shift{0.5f};
+    std::uint64_t seed = 0;
+    int bounces = 0;  // of the path that led here
+  };
+  Rgb gather(const Vec3& x, const Vec3& n, const GatherRays& gathering) const;
+  Rgb reflected_radiosity_by_path(const RayHit& hit, std::uint64_t seed, int bounces) const;
 
   const SolverState* state_;
   ReadOptions options_;

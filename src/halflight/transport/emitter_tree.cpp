@@ -416,4 +416,11 @@ Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptio
   return sum;
 }
 
+Rgb EmitterTree::irradiance_by_one_ray(const Vec3& x, const Vec3& n, Vec2 shift,
+                                       float feature_size) const {
+  if (empty()) return Rgb(0.f);
+  const CutNode root{.node = 0, .expected = 1.f};
+  return from_some({&root, 1}, x, n, 1, shift, feature_size);
+}
+
 }  // namespace halflight
