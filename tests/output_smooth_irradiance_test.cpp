@@ -67,5 +67,32 @@ TEST(SmoothIrradiance, MakesNoOvershootAtAnEdge) {
   });
 }
 
+// Cells of independent noise whose variance is known; the floor's light is 3 +- 1 along x.
+TEST(SmoothIrradiance, LeavesOutNoiseAndKeepsEdges) {
+  constexpr float kNoise = 0.2f;
+  const auto slope = [](const Vec3& p) { return 2.f + 0.5f * p.x; };
+  const auto edge = [](const Vec3& p) { return p.x < 2.f ? 1.f : 9.f; };
+  const auto rms_error = [&](const auto& light, bool known) {
+    SolverState state = floor_with(light);
+    IdVector<ElementId, float> variance(state.tree.size(), 0.f);
+    for (std::size_t i = 0; i < state.tree.size(); ++i) {
+      const ElementId e(i);
+      const float noise = std::sqrt(12.f) * kNoise * (to_unit_float(hash(i, 5)) - 0.5f);
+      state.irradiance[e] += Rgb(noise);
+      if (known) variance[e] = kNoise * kNoise;
+    }
+    const SmoothIrradiance smooth(state.tree, state.irradiance, variance);
+    double squares = 0.0, count = 0.0;
+    for_points_of_the_floor(state, [&](ElementId leaf, const Vec3& p) {
+      const auto error = static_cast<double>(smooth.at(leaf, p).g - light(p));
+      squares += error * error;
+      count += 1.0;
+    });
+    return std::sqrt(squares / count);
+  };
+  EXPECT_LT(rms_error(slope, true), 0.5 * rms_error(slope, false));
+  EXPECT_LT(rms_error(edge, true), 0.6 * rms_error(edge, false));
+}
+
 }  // namespace
 }  // namespace halflight

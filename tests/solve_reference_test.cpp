@@ -119,6 +119,26 @@ TEST(SolvedLight, SheetThatGlowsOnBothSides) {
   expect_as_path_traced(scene, 0.2f);
 }
 
+// A board hangs 1 cm below the ceiling, with cells ten times as large: what is above it is dark.
+TEST(SolvedLight, OfAGapFarBelowTheFeatureSizeIsThatOfThePathTracer) {
+  QuadScene scene;
+  scene.box({0, 0, 0}, {3, 2.5f, 4}, scene.material(0.6f), true);
+  scene.quad({1, 2.49f, 1}, {1, 0, 0}, {0, 0, 1.5f}, scene.material(0.6f, 0.f, true));
+  scene.quad({1, 1, 1}, {0.5f, 0, 0}, {0, 0, 0.5f}, scene.material(0.f, 8.f, true));
+  const SolverState state =
+      testing::solve(scene.scene, testing::options_of(LinkMaker::sampled, 0.3f));
+  std::vector<ReadingPoint> points;
+  for (int i = 0; i < 8; ++i) {
+    const float along = 0.05f * static_cast<float>(i);
+    for (const float x : {1.01f + along, 0.995f - 0.1f * along})
+      points.push_back({{x, 2.5f, 1.7f}, {0, -1, 0}, {}});
+  }
+  const auto reference = path_traced(*state.world, points, 1u << 14);
+  const auto read = testing::read_irradiance(state, points, sensor_reading(state));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_NEAR(read[i], reference[i], 0.02f * mean_irradiance(state)) << points[i].position.x;
+}
+
 // A leaf is a square with a hole in its alpha map; it lies under a lamp and lets light through.
 TEST(SolvedLight, HolesInLeavesPassLight) {
   QuadScene scene;
@@ -180,22 +200,27 @@ TEST(EmitterTreeLight, OfFewRaysIsRightOnAverage) {
                                 .penumbra_rays = 2048,
                                 .largest_group_share = 1e-4f,
                                 .smallest_angle = 1e-4f};
-  const auto points = scatter_points(state, 40);
-  for (const ReadingPoint& p : points) {
-    const float expected = average(emitters.irradiance(p.position, p.normal, many));
+  const auto expect_mean = [](const ReadingPoint& p, int tries, float expected,
+                              const auto& estimate) {
     double sum = 0.0, squares = 0.0;
-    constexpr int kTries = 4000;
-    for (int k = 0; k < kTries; ++k) {
-      const auto e = static_cast<double>(
-          average(emitters.irradiance(p.position, p.normal, few, random_shift(hash(k, 3)))));
+    for (int k = 0; k < tries; ++k) {
+      const auto e = static_cast<double>(average(estimate(random_shift(hash(k, 3)))));
       sum += e;
       squares += e * e;
     }
-    const double mean = sum / kTries;
-    const double noise = std::sqrt(std::max(0.0, squares / kTries - mean * mean) / kTries);
+    const double mean = sum / tries;
+    const double noise = std::sqrt(std::max(0.0, squares / tries - mean * mean) / tries);
     EXPECT_NEAR(mean, static_cast<double>(expected),
                 4.0 * noise + 0.01 * static_cast<double>(expected))
         << p.position.x << ", " << p.position.y << ", " << p.position.z;
+  };
+  for (const ReadingPoint& p : scatter_points(state, 40)) {
+    const float expected = average(emitters.irradiance(p.position, p.normal, many));
+    expect_mean(p, 4000, expected,
+                [&](Vec2 shift) { return emitters.irradiance(p.position, p.normal, few, shift); });
+    expect_mean(p, 20000, expected, [&](Vec2 shift) {
+      return emitters.irradiance_by_one_ray(p.position, p.normal, shift, few.feature_size);
+    });
   }
 }
 

@@ -5,6 +5,9 @@
 namespace halflight {
 namespace {
 
+// A difference is taken for noise up to so many variances.
+constexpr float kCaution = 1.5f;
+
 Rgb minmod(const Rgb& a, const Rgb& b) {
   Rgb result(0.f);
   for (int c = 0; c < 3; ++c)
@@ -35,7 +38,8 @@ void take_means(const ElementTree& tree, IdVector<ElementId, Rgb>& irradiance,
 // Of a difference, that which its variance does not account for.
 float share_of_signal(const Rgb& difference, float variance) {
   const float squared = average(difference) * average(difference);
-  return squared > variance ? 1.f - variance / squared : 0.f;
+  const float noise = kCaution * variance;
+  return squared > noise ? 1.f - noise / squared : 0.f;
 }
 
 }  // namespace
