@@ -5,6 +5,7 @@
 #include <map>
 
 #include "room_command.h"
+#include "sanitized.h"
 #include "shared_scenes.h"
 
 namespace halflight {
@@ -136,7 +137,10 @@ TEST_P(CommandDeterminism, InterruptedAndResumedIsTheSame) {
     expect_same(whole, "part", false);
     for (const auto& file : whole) fs::remove(path("part") / file.first);
   }
-  EXPECT_GT(interrupted, 0);
+  // Some signal comes in time, unless time itself is another.
+  if (!test::kSanitized) {
+    EXPECT_GT(interrupted, 0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(

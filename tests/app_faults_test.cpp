@@ -11,6 +11,7 @@
 #include "halflight/base/hash.h"
 #include "limited_run.h"
 #include "room_command.h"
+#include "sanitized.h"
 #include "shared_scenes.h"
 
 namespace halflight {

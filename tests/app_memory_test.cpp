@@ -6,6 +6,7 @@
 
 #include "limited_run.h"
 #include "room_command.h"
+#include "sanitized.h"
 #include "shared_scenes.h"
 
 namespace halflight {

@@ -13,13 +13,6 @@
 
 namespace halflight::test {
 
-// Address and thread sanitizers reserve terabytes and start threads of their own.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kSanitized = true;
-#else
-inline constexpr bool kSanitized = false;
-#endif
-
 // What `prepare` does before the program starts: limits, rights. False: it cannot be done here.
 using Preparation = std::function<bool()>;
 inline constexpr int kCannotPrepare = 125;

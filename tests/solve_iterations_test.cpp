@@ -8,6 +8,7 @@
 #include "halflight/rays/path_tracer.h"
 #include "halflight/scene/procedural/doorway.h"
 #include "halflight/scene/procedural/loose_triangles.h"
+#include "sanitized.h"
 #include "solved_scene.h"
 
 namespace halflight {
@@ -144,6 +145,7 @@ INSTANTIATE_TEST_SUITE_P(Links, Iterations,
                          });
 
 TEST(Iterations, KeepToTheirTime) {
+  if (test::kSanitized) GTEST_SKIP() << "sanitizers are slow at random";
   LooseTrianglesParameters p;
   p.count = 4000;
   SolverState state = make_state(make_world(loose_triangles_scene(p)), SolveOptions{});

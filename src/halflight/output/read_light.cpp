@@ -79,6 +79,14 @@ ReadOptions with_feature_size(ReadOptions options, float feature_size) {
   return options;
 }
 
+// In [0, 1), for one of so many rays that fill the hemisphere: of any few neighbours on the disc
+// the choices are spread evenly (a lattice of the plastic number's powers, as in r2_sequence).
+float choice_of(const Vec3& w, float rays, std::uint64_t seed) {
+  const Vec2 cell = (0.5f * std::sqrt(rays)) * Vec2(w);
+  const float x = random_shift(seed).x + 0.7548777f * cell.x + 0.5698403f * cell.y;
+  return std::min(x - std::floor(x), 0.999999f);
+}
+
 // Of leaf cells; with refined links, direct light of emitters as well.
 IdVector<ElementId, Rgb> indirect_irradiance(const SolverState& state) {
   IdVector<ElementId, Rgb> indirect = state.irradiance;
@@ -174,26 +182,29 @@ Rgb SolutionReader::gather(const Vec3& x, const Vec3& n, const GatherRays& gathe
   const Frame frame = Frame::from_normal(n);
   const Vec3 from = world.rays.lift(x, n);
   std::uint32_t index = 0;
-  return adaptive_cosine_mean(gathering.rays, gathering.shift, [&](const Vec3& w, float) {
-    const std::uint64_t seed = hash(gathering.seed, index++);
-    const auto hit = world.rays.closest_hit(from, frame.to_world(w), kInfinity, seed);
-    if (!hit || is_bright_[state_->surfaces->side_hit(*hit)]) return Rgb(0.f);
-    const ElementId leaf = state_->tree.leaf_hit(*hit);
-    const bool near = leaf.valid() && gathering.bounces < kMostBounces &&
-                      hit->distance < options_.near_hits * state_->tree.cell_size(leaf);
-    return near ? reflected_radiosity_by_path(*hit, seed, gathering.bounces)
-                : reflected_radiosity(*hit);
-  });
+  return adaptive_cosine_mean(
+      gathering.rays, gathering.shift, [&](const Vec3& w, float rays) -> SeenLight {
+        const std::uint64_t seed = hash(gathering.seed, index++);
+        const auto hit = world.rays.closest_hit(from, frame.to_world(w), kInfinity, seed);
+        if (!hit || is_bright_[state_->surfaces->side_hit(*hit)]) return Rgb(0.f);
+        const ElementId leaf = state_->tree.leaf_hit(*hit);
+        const bool near = leaf.valid() && gathering.bounces < kMostBounces &&
+                          hit->distance < options_.near_hits * state_->tree.cell_size(leaf);
+        const Rgb of_cell = reflected_radiosity(*hit);
+        if (!near) return of_cell;
+        const float choice = choice_of(w, rays, gathering.seed);
+        return {reflected_radiosity_by_path(*hit, choice, seed, gathering.bounces), of_cell};
+      });
 }
 
-Rgb SolutionReader::reflected_radiosity_by_path(const RayHit& hit, std::uint64_t seed,
+Rgb SolutionReader::reflected_radiosity_by_path(const RayHit& hit, float choice, std::uint64_t seed,
                                                 int bounces) const {
   const World& world = *state_->world;
   const Vec3 y = hit_position(world.geometry, hit), n = hit_normal(world.geometry, hit);
   const float s = options_.direct.feature_size;
   const Vec2 shift = random_shift(seed);
-  const Rgb irradiance = emitters_.irradiance_by_one_ray(y, n, shift, s) +
-                         bright_.irradiance_by_one_ray(y, n, shift, s) +
+  const Rgb irradiance = emitters_.irradiance_by_one_ray(y, n, choice, shift, s) +
+                         bright_.irradiance_by_one_ray(y, n, choice, shift, s) +
                          punctual_irradiance(*state_->visibility, y, n, s) +
                          sky_irradiance(*state_->visibility, y, n, 1, shift, s) +
                          gather(y, n, {1, random_shift(hash(seed, 1)), seed, bounces + 1});

@@ -82,7 +82,9 @@ class SolutionReader {
     int bounces = 0;  // of the path that led here
   };
   Rgb gather(const Vec3& x, const Vec3& n, const GatherRays& gathering) const;
-  Rgb reflected_radiosity_by_path(const RayHit& hit, std::uint64_t seed, int bounces) const;
+  // One ray to an emitter of this choice in [0, 1), and one on.
+  Rgb reflected_radiosity_by_path(const RayHit& hit, float choice, std::uint64_t seed,
+                                  int bounces) const;
 
   const SolverState* state_;
   ReadOptions options_;

@@ -27,7 +27,18 @@ inline Vec2 concentric_disc(Vec2 u) {
   return r * Vec2(std::cos(angle), std::sin(angle));
 }
 
-// Mean over directions w about +Z with density cos(theta) / pi of the colour `seen(w, rays)`, where
+// What a ray has seen. Where it is an estimate with noise, the grid goes by the guide instead,
+// which must know nothing of that noise: rays that are added where it is large would make it
+// smaller on average, and the mean wrong.
+struct SeenLight {
+  Rgb light{0.f};
+  Rgb guide{0.f};
+  SeenLight() = default;
+  SeenLight(const Rgb& exact) : light(exact), guide(exact) {}  // NOLINT: is one
+  SeenLight(const Rgb& noisy, const Rgb& instead) : light(noisy), guide(instead) {}
+};
+
+// Mean over directions w about +Z with density cos(theta) / pi of the light `seen(w, rays)`, where
 // `rays` is how many such rays would fill the hemisphere. At most twice `rays` are asked, and a
 // few.
 template <class Seen>
@@ -40,7 +51,7 @@ class AdaptiveCosineMean {
         values_(side_ * side_),
         finer_(values_.size(), 0) {
     for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = mean_of_cell(i, 1);
-    const float enough = kContrast * average(mean());
+    const float enough = kContrast * average(mean().guide);
     std::vector<std::size_t> mixed;
     for (std::size_t i = 0; i < values_.size(); ++i)
       if (differs(i, enough)) mixed.push_back(i);
@@ -62,20 +73,27 @@ class AdaptiveCosineMean {
     }
   }
 
-  Rgb mean() const {
-    Rgb sum(0.f);
-    for (const Rgb& value : values_) sum += value;
-    return sum / static_cast<float>(values_.size());
+  SeenLight mean() const {
+    SeenLight sum;
+    for (const SeenLight& value : values_) add(value, sum);
+    return divided(sum, values_.size());
   }
 
  private:
   static constexpr float kContrast = 0.5f;  // of neighbours, in means of the hemisphere
   static constexpr std::size_t kMostFiner = 8;
 
+  static void add(const SeenLight& value, SeenLight& sum) {
+    sum.light += value.light;
+    sum.guide += value.guide;
+  }
+  static SeenLight divided(const SeenLight& sum, std::size_t count) {
+    return {sum.light / static_cast<float>(count), sum.guide / static_cast<float>(count)};
+  }
   // Of `finer` x `finer` rays through a cell.
-  Rgb mean_of_cell(std::size_t cell, std::size_t finer) const {
+  SeenLight mean_of_cell(std::size_t cell, std::size_t finer) const {
     const std::size_t across = side_ * finer;
-    Rgb sum(0.f);
+    SeenLight sum;
     for (std::size_t i = 0; i < finer * finer; ++i) {
       const std::size_t column = cell % side_ * finer + i % finer;
       const std::size_t row = cell / side_ * finer + i / finer;
@@ -84,12 +102,12 @@ class AdaptiveCosineMean {
       const Vec2 disc =
           concentric_disc((corner + r2_sequence(index, shift_)) / static_cast<float>(across));
       const float z = std::sqrt(std::max(0.f, 1.f - glm::dot(disc, disc)));
-      sum += seen_(Vec3(disc, z), static_cast<float>(across * across));
+      add(seen_(Vec3(disc, z), static_cast<float>(across * across)), sum);
     }
-    return sum / static_cast<float>(finer * finer);
+    return divided(sum, finer * finer);
   }
   float contrast(std::size_t i, std::size_t k) const {
-    return average(glm::abs(values_[i] - values_[k]));
+    return average(glm::abs(values_[i].guide - values_[k].guide));
   }
   template <class Visit>
   void each_neighbour(std::size_t i, const Visit& visit) const {
@@ -107,18 +125,20 @@ class AdaptiveCosineMean {
   const Seen& seen_;
   Vec2 shift_;
   std::size_t side_;
-  std::vector<Rgb> values_;
+  std::vector<SeenLight> values_;
   std::vector<std::uint8_t> finer_;
 };
 
 // The same; few rays are spread evenly.
 template <class Seen>
 Rgb adaptive_cosine_mean(int rays, Vec2 shift, const Seen& seen) {
-  if (rays >= kLeastAdaptiveRays) return AdaptiveCosineMean<Seen>(rays, shift, seen).mean();
+  if (rays >= kLeastAdaptiveRays) return AdaptiveCosineMean<Seen>(rays, shift, seen).mean().light;
   const auto count = static_cast<float>(rays);
   Rgb sum(0.f);
   for (int k = 0; k < rays; ++k)
-    sum += seen(cosine_hemisphere(r2_sequence(static_cast<std::uint32_t>(k), shift)), count);
+    sum +=
+        SeenLight(seen(cosine_hemisphere(r2_sequence(static_cast<std::uint32_t>(k), shift)), count))
+            .light;
   return sum / count;
 }
 

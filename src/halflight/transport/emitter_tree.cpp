@@ -336,16 +336,20 @@ EmitterTree::ChosenEmitter EmitterTree::choose_below(std::uint32_t node, float c
   return {nodes_[node].first, probability};
 }
 
+EmitterTree::ChosenEmitter EmitterTree::choose_below(std::uint32_t node, float choice,
+                                                     const Vec3& x, const Vec3& n) const {
+  // Unlike the bounds of the cut, no more than a middle estimate: what one group is thought to give
+  // too much, others would get too rarely.
+  return choose_below(node, choice, [&](const Node& group) {
+    if (group.right == 0) return expected_irradiance(group, x, n);
+    return cannot_light(group, x, n) ? 0.f : sent_to(group, x, kNearGroup * group.box.diagonal());
+  });
+}
+
 Rgb EmitterTree::from_some(std::span<const CutNode> nodes, const Vec3& x, const Vec3& n, int rays,
                            Vec2 shift, float feature_size) const {
   float expected = 0.f;
   for (const CutNode& c : nodes) expected += c.expected;
-  // Unlike the bounds of the cut, no more than a middle estimate: what one group is thought to give
-  // too much, others would get too rarely.
-  const auto estimate = [&](const Node& node) {
-    if (node.right == 0) return expected_irradiance(node, x, n);
-    return cannot_light(node, x, n) ? 0.f : sent_to(node, x, kNearGroup * node.box.diagonal());
-  };
   const Vec2 choice_shift = other_shift(shift, kChoices);
   Rgb sum(0.f);
   std::size_t at = 0;
@@ -356,7 +360,7 @@ Rgb EmitterTree::from_some(std::span<const CutNode> nodes, const Vec3& x, const 
     const float choice = expected * (static_cast<float>(k) + u.x) / static_cast<float>(rays);
     while (at + 1 < nodes.size() && before + nodes[at].expected <= choice)
       before += nodes[at++].expected;
-    const ChosenEmitter chosen = choose_below(nodes[at].node, u.y, estimate);
+    const ChosenEmitter chosen = choose_below(nodes[at].node, u.y, x, n);
     if (!(chosen.probability > 0.f)) continue;
     sum += from_triangle(chosen.emitter, x, n, 1, 1, r2_sequence(index, shift), feature_size) /
            (nodes[at].expected * chosen.probability);
@@ -416,11 +420,12 @@ Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptio
   return sum;
 }
 
-Rgb EmitterTree::irradiance_by_one_ray(const Vec3& x, const Vec3& n, Vec2 shift,
+Rgb EmitterTree::irradiance_by_one_ray(const Vec3& x, const Vec3& n, float choice, Vec2 shift,
                                        float feature_size) const {
   if (empty()) return Rgb(0.f);
-  const CutNode root{.node = 0, .expected = 1.f};
-  return from_some({&root, 1}, x, n, 1, shift, feature_size);
+  const ChosenEmitter chosen = choose_below(0, choice, x, n);
+  if (!(chosen.probability > 0.f)) return Rgb(0.f);
+  return from_triangle(chosen.emitter, x, n, 1, 1, shift, feature_size) / chosen.probability;
 }
 
 }  // namespace halflight

@@ -64,9 +64,10 @@ class EmitterTree {
   Rgb irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options,
                  Vec2 shift = Vec2(0.5f)) const;
 
-  // The same by a single ray to an emitter chosen at random: an estimate whose mean over all shifts
-  // is the irradiance.
-  Rgb irradiance_by_one_ray(const Vec3& x, const Vec3& n, Vec2 shift, float feature_size) const;
+  // The same by a single ray to an emitter chosen at random: an estimate whose mean over choices in
+  // [0, 1) and all shifts is the irradiance.
+  Rgb irradiance_by_one_ray(const Vec3& x, const Vec3& n, float choice, Vec2 shift,
+                            float feature_size) const;
 
   // Chooses a place to light something at x of the given radius, about in proportion to what it
   // sends there; u in [0, 1)^3. None: nothing can.
@@ -108,6 +109,8 @@ class EmitterTree {
   // [0, 1); probability 0: nothing is expected of any.
   template <class Estimate>
   ChosenEmitter choose_below(std::uint32_t node, float choice, const Estimate& estimate) const;
+
+  ChosenEmitter choose_below(std::uint32_t node, float choice, const Vec3& x, const Vec3& n) const;
 
   struct Shape {
     Vec3 middle, normal;
