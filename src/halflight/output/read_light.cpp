@@ -87,6 +87,16 @@ float choice_of(const Vec3& w, float rays, std::uint64_t seed) {
   return std::min(x - std::floor(x), 0.999999f);
 }
 
+// Bright surfaces are a part of what is gathered, and worth no more rays than the rest.
+DirectLightOptions bright_options(const ReadOptions& options) {
+  DirectLightOptions bright = options.direct;
+  const int rays = std::max(1, options.gather_rays);
+  bright.shadow_rays = std::clamp(rays / 8, 1, bright.shadow_rays);
+  bright.penumbra_rays = std::clamp(rays / 2, 1, bright.penumbra_rays);
+  bright.largest_group_share = std::max(bright.largest_group_share, 1.f / static_cast<float>(rays));
+  return bright;
+}
+
 // Of leaf cells; with refined links, direct light of emitters as well.
 IdVector<ElementId, Rgb> indirect_irradiance(const SolverState& state) {
   IdVector<ElementId, Rgb> indirect = state.irradiance;
@@ -133,7 +143,7 @@ ReadOptions sensor_reading(const SolverState& state) {
   };
   ReadOptions options;
   options.gather_rays = rays(options.gather_rays, 1);
-  options.direct.shadow_rays = std::min(rays(kSensorShadowRays, 8), kSensorShadowRays);
+  options.direct.shadow_rays = kSensorShadowRays;
   options.direct.penumbra_rays = std::min(rays(kSensorPenumbraRays, 32), kSensorPenumbraRays);
   return options;
 }
@@ -174,7 +184,7 @@ RadianceAt SolutionReader::reflected_radiance() const {
 Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
   // Points in the air lie in no cell.
   const int rays = options_.gather_rays > 0 ? options_.gather_rays : kMeshReading.gather_rays;
-  return gather(x, n, {.rays = rays}) + bright_.irradiance(x, n, options_.direct);
+  return gather(x, n, {.rays = rays}) + bright_.irradiance(x, n, bright_options(options_));
 }
 
 Rgb SolutionReader::gather(const Vec3& x, const Vec3& n, const GatherRays& gathering) const {
