@@ -5,7 +5,8 @@
 #
 # What the corpora grow by is kept in build/fuzz/corpus, inputs that fail go to build/fuzz/findings.
 # Fails when there is one. FUZZ_HANG (10) is how many seconds one input may take by the clock: more
-# where the machine is busy with other things.
+# where the machine is busy with other things. FUZZ_SEED makes a run from the same corpus try the same
+# inputs in the same order.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:?usage: scripts/fuzz.sh SECONDS [TARGET...]}
@@ -48,7 +49,8 @@ fuzz() {  # TARGET
       ;;
   esac
   [ ! -f "fuzz/dictionaries/$target.dict" ] || options+=("-dict=fuzz/dictionaries/$target.dict")
-  "$build/bin/fuzz_$target" -max_total_time="$seconds" -timeout="${FUZZ_HANG:-10}" -rss_limit_mb=2048 \
+  "$build/bin/fuzz_$target" -seed="${FUZZ_SEED:-0}" -max_total_time="$seconds" \
+    -timeout="${FUZZ_HANG:-10}" -rss_limit_mb=2048 \
     -max_len="$(longest "$target")" -print_final_stats=1 -report_slow_units=5 -close_fd_mask=1 \
     -artifact_prefix="$build/findings/$target/" "${options[@]}" \
     "$build/corpus/$target" "${places[@]}" >"$build/logs/$target" 2>&1 || true

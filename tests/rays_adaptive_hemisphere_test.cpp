@@ -36,6 +36,25 @@ TEST(AdaptiveHemisphere, SmoothLightIsIntegratedWithTheCosine) {
   EXPECT_NEAR(mean([](const Vec3& w) { return w.y * w.y; }), 0.25f, 1e-3f);
 }
 
+// One ray in twenty meets a light of 20: where the rays go must have nothing to do with that.
+TEST(AdaptiveHemisphere, NoiseBesideItsGuideLeavesNoBias) {
+  const auto mean_of_many = [](bool guided) {
+    double sum = 0.0;
+    constexpr int kTimes = 400;
+    for (int i = 0; i < kTimes; ++i) {
+      int ray = 0;
+      const auto seen = [&](const Vec3&, float) -> SeenLight {
+        const Rgb noisy(to_unit_float(hash(i, ++ray, 7)) < 0.05f ? 20.f : 0.f);
+        return guided ? SeenLight(noisy, Rgb(1.f)) : SeenLight(noisy);
+      };
+      sum += static_cast<double>(adaptive_cosine_mean(kRays, Vec2(0.5f), seen).g);
+    }
+    return sum / kTimes;
+  };
+  EXPECT_NEAR(mean_of_many(true), 1.0, 0.02);
+  EXPECT_LT(mean_of_many(false), 0.95);  // what the guide is for
+}
+
 // Windows at height 1, from a quarter of the view to less than one ray in a hundred, and a slit.
 TEST(AdaptiveHemisphere, WindowsHaveTheirConfigurationFactor) {
   struct Window {

@@ -88,13 +88,12 @@ float choice_of(const Vec3& w, float rays, std::uint64_t seed) {
 }
 
 // Bright surfaces are a part of what is gathered, and worth no more rays than the rest.
-DirectLightOptions bright_options(const ReadOptions& options) {
-  DirectLightOptions bright = options.direct;
-  const int rays = std::max(1, options.gather_rays);
-  bright.shadow_rays = std::clamp(rays / 8, 1, bright.shadow_rays);
-  bright.penumbra_rays = std::clamp(rays / 2, 1, bright.penumbra_rays);
-  bright.largest_group_share = std::max(bright.largest_group_share, 1.f / static_cast<float>(rays));
-  return bright;
+DirectLightOptions bright_options(DirectLightOptions options, int gather_rays) {
+  options.shadow_rays = std::clamp(gather_rays / 8, 1, options.shadow_rays);
+  options.penumbra_rays = std::clamp(gather_rays / 2, 1, options.penumbra_rays);
+  options.largest_group_share =
+      std::max(options.largest_group_share, 1.f / static_cast<float>(gather_rays));
+  return options;
 }
 
 // Of leaf cells; with refined links, direct light of emitters as well.
@@ -167,8 +166,11 @@ Rgb SolutionReader::direct(const Vec3& x, const Vec3& n, Vec2 shift) const {
 }
 
 Rgb SolutionReader::reflected_radiosity(const RayHit& hit) const {
+  return reflected_radiosity(hit, state_->tree.leaf_hit(hit));
+}
+
+Rgb SolutionReader::reflected_radiosity(const RayHit& hit, ElementId leaf) const {
   const World& world = *state_->world;
-  const ElementId leaf = state_->tree.leaf_hit(hit);
   if (!leaf.valid()) return Rgb(0.f);
   return reflectance_at(world.scene, world.geometry, hit.triangle, hit.barycentric) *
          irradiance_.at(leaf, hit_position(world.geometry, hit));
@@ -184,7 +186,8 @@ RadianceAt SolutionReader::reflected_radiance() const {
 Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
   // Points in the air lie in no cell.
   const int rays = options_.gather_rays > 0 ? options_.gather_rays : kMeshReading.gather_rays;
-  return gather(x, n, {.rays = rays}) + bright_.irradiance(x, n, bright_options(options_));
+  return gather(x, n, {.rays = rays}) +
+         bright_.irradiance(x, n, bright_options(options_.direct, rays));
 }
 
 Rgb SolutionReader::gather(const Vec3& x, const Vec3& n, const GatherRays& gathering) const {
@@ -200,7 +203,7 @@ Rgb SolutionReader::gather(const Vec3& x, const Vec3& n, const GatherRays& gathe
         const ElementId leaf = state_->tree.leaf_hit(*hit);
         const bool near = leaf.valid() && gathering.bounces < kMostBounces &&
                           hit->distance < options_.near_hits * state_->tree.cell_size(leaf);
-        const Rgb of_cell = reflected_radiosity(*hit);
+        const Rgb of_cell = reflected_radiosity(*hit, leaf);
         if (!near) return of_cell;
         const float choice = choice_of(w, rays, gathering.seed);
         return {reflected_radiosity_by_path(*hit, choice, seed, gathering.bounces), of_cell};

@@ -70,6 +70,7 @@ class SolutionReader {
  private:
   // Of a point on a triangle.
   ElementId leaf_at(const ReadingPoint& point) const;
+  Rgb reflected_radiosity(const RayHit& hit, ElementId leaf) const;
   Reading read_from_cell(const ReadingPoint& point) const;
   bool matters_to_nobody(const ReadingPoint& point) const;
   RadianceAt reflected_radiance() const;  // refers to the reader
