@@ -88,7 +88,8 @@ ErrorProbes::ErrorProbes(const SolverState& state)
     const float scale = std::max(average(truths_[i].mean()), mean);
     const float excess = scale > 0.f ? noise[i] / (wanted * scale) : 0.f;
     const float enough = static_cast<float>(kPilotPaths) * excess * excess;
-    const int paths = static_cast<int>(std::clamp(enough, float{kLeastPaths}, float{kMostPaths}));
+    const int paths =
+        static_cast<int>(std::min(float{kMostPaths}, std::max(float{kLeastPaths}, enough)));
     truths_[i] = {trace(i, paths, 61).mean, trace(i, paths, 67).mean};
   });
 }

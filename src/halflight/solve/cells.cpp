@@ -73,7 +73,7 @@ bool is_slight(const SolverState& state, ElementId cell, float total_power) {
 DirectLightOptions cell_direct_light(const SolverState& state, ElementId cell, float total_power) {
   const bool slight = is_slight(state, cell, total_power);
   DirectLightOptions options = slight ? kSlightDirectLight : kCellDirectLight;
-  const float share = kErrorOfAllShadowRays / aimed_error(state);
+  const float share = std::min(1.f, kErrorOfAllShadowRays / aimed_error(state));
   options.shadow_rays =
       std::clamp(static_cast<int>(share * static_cast<float>(options.shadow_rays)),
                  kFewestShadowRays, options.shadow_rays);

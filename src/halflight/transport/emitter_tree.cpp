@@ -397,9 +397,9 @@ Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptio
     return nodes_[c.node].right == 0 && c.expected > options.largest_group_share * expected;
   };
   const auto first_of_rest = std::stable_partition(cut.begin(), cut.end(), alone);
-  // Rays go where the light comes from.
+  // Rays go where the light comes from. Light beyond all numbers has no share.
   const auto rays_for = [&](float light, int all) {
-    const float share = light / (kShareOfAllRays * expected);
+    const float share = std::max(0.f, light / (kShareOfAllRays * expected));
     return std::max(1, static_cast<int>(std::ceil(share * static_cast<float>(all))));
   };
   Rgb sum(0.f);
