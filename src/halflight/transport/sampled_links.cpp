@@ -36,6 +36,8 @@ struct RayTally {
       ++buried;
       return;
     }
+    // A cell of which no sample was opaque: what was hit is too little of it to send any light.
+    if (!(opacity[source] > 0.f)) return;
     links.push_back({receiver, {source, weight / opacity[source], 0.f, {}}});
   }
   // The rays that began in the open stand for the covered ones too: the receiver's light is that

@@ -242,7 +242,7 @@ TransferEstimate estimate_touching_transfer(const TransferScene& scene, ElementI
     const auto hit = rays.closest_hit(rays.lift(x.position, x.normal), w, kInfinity, hash(seed, k));
     if (!hit) continue;
     ElementId at = tree.leaf_hit(*hit);
-    if (!at.valid()) continue;
+    if (!at.valid() || !(scene.opacity[at] > 0.f)) continue;
     // The ray stopped in proportion to the opacity, by which radiosity is already reduced.
     const float radiosity = average(scene.radiosity[at]) / scene.opacity[at];
     while (at.value > source.value) at = tree[at].parent;  // parents have smaller ids
