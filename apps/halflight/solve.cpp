@@ -178,8 +178,8 @@ Result<int> run(const SolveCommand& command) {
     if (state.history.size() == 1) balance(state, progress);
     saver.after_iteration(state, progress);
   };
-  const SolveOutcome outcome = run_to_goal(state, plan->goals, deadline, progress,
-                                           !command.outputs.report.empty(), after_iteration);
+  SolveOutcome outcome = run_to_goal(state, plan->goals, deadline, progress,
+                                     !command.outputs.report.empty(), after_iteration);
   report.end_phase("solve", phase);
   // Taking the light apart undoes the balance of the groups that refinement goes on with.
   Result<void> written;
@@ -187,7 +187,7 @@ Result<int> run(const SolveCommand& command) {
   if (!complete) written = saver.end(state);
   if (!state.grouped.groups.empty() && !state.grouped.separated()) {
     phase = std::chrono::steady_clock::now();
-    separate(state, progress);
+    separate_groups(state, plan->goals, progress, outcome);
     report.end_phase("light groups", phase);
   }
   if (complete) written = saver.end(state);

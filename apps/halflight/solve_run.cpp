@@ -6,6 +6,7 @@
 
 #include "halflight/hierarchy/live_sides.h"
 #include "halflight/solve/memory.h"
+#include "halflight/solve/mix.h"
 
 namespace halflight::app {
 namespace {
@@ -44,6 +45,12 @@ bool run_schedule(SolverState& state, const SolveGoals& goals, const Deadline& d
     if (after_iteration) after_iteration(state);
   }
   return true;
+}
+
+// Of light that is not refined any more.
+bool meets(const SolveGoals& goals, const SolverState& state, const EstimatedError& error) {
+  const bool accurate = !goals.error || error.relative_rms <= *goals.error;
+  return state.done() && state.schedule.short_of_memory == 0 && accurate;
 }
 
 }  // namespace
@@ -90,6 +97,10 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
   if (progress.cancelled() || (deadline.set() && !outcome.goal_met)) return outcome;
   const ErrorProbes probes(state);
   outcome.error = probes.measure(state);
+  if (state.grouped.separated()) {
+    outcome.goal_met = meets(goals, state, *outcome.error);
+    return outcome;
+  }
   if (!goals.error) return outcome;
   // A solve that was resumed has some of its rounds behind it.
   const int coarse_rounds = coarsely_first ? 1 : 0;
@@ -108,6 +119,14 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
       outcome.goal_met = false;
   }
   return outcome;
+}
+
+void separate_groups(SolverState& state, const SolveGoals& goals, const Progress& progress,
+                     SolveOutcome& outcome) {
+  separate(state, progress);
+  if (!outcome.error || progress.cancelled()) return;
+  outcome.error = ErrorProbes(state).measure(state);
+  outcome.goal_met = meets(goals, state, *outcome.error);
 }
 
 }  // namespace halflight::app

@@ -21,9 +21,14 @@ Result<SolverState> begin_solve(const std::shared_ptr<const World>& world,
                                 const SolveOptions& options, std::size_t for_outputs = 0);
 
 // `after_iteration` is called with a valid state. The error is measured when it is a goal, or when
-// `wants_error`.
+// `wants_error`. Light that has been taken apart into its groups is done: it is only measured.
 SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Deadline& deadline,
                          const Progress& progress, bool wants_error,
                          const std::function<void(const SolverState&)>& after_iteration = {});
+
+// Takes the light apart into its groups, which leaves the balance that the solve has kept between
+// them: what was measured before is measured anew, on the sum that is written.
+void separate_groups(SolverState& state, const SolveGoals& goals, const Progress& progress,
+                     SolveOutcome& outcome);
 
 }  // namespace halflight::app
