@@ -20,8 +20,6 @@
 #include "checkpoint_scene.h"
 #include "gltf_builder.h"
 #include "halflight/io/read_file.h"
-#include "halflight/scene/scene_digest.h"
-#include "halflight/solve/checkpoint.h"
 
 namespace halflight {
 namespace {
@@ -384,16 +382,9 @@ void write_nested() {
 Result<void> write_checkpoints() {
   const auto world = fuzz::checkpoint_world();
   for (const LinkMaker links : {LinkMaker::refined, LinkMaker::sampled}) {
-    SolveOrigin origin;
+    SolveOrigin origin = fuzz::checkpoint_origin(*world, links);
     origin.scene.path = place("checkpoint", "scene.glb");
-    origin.scene_digest = digest_of(world->scene);
-    SolveOptions options;
-    options.links = links;
-    options.feature_size = 2.f;
-    options.error = 0.9f;
-    options.levels = 1;
-    origin.options = options = resolved(options, *world);
-    SolverState state = make_state(world, options);
+    SolverState state = make_state(world, origin.options);
     for (int i = 0; i < 30; ++i) {
       const std::string name =
           fmt::format("{}-{}", links == LinkMaker::refined ? "refined" : "sampled", i);

@@ -143,7 +143,8 @@ TEST_F(CheckpointCommand, MixDimsAndRecolours) {
     EXPECT_EQ(red[i + 1], 0.f);
   }
   EXPECT_THAT(one_line_error("mix c --group bulb=1"), HasSubstr("the checkpoint has lamp, sky"));
-  for (const char* factor : {"lamp", "lamp=", "lamp=-1", "lamp=1,2", "lamp=nan", "lamp=1,2,3,4"})
+  for (const char* factor :
+       {"lamp", "lamp=", "lamp=-1", "lamp=1,2", "lamp=nan", "lamp=1e9", "lamp=1,2,3,4"})
     EXPECT_THAT(one_line_error(std::string("mix c --group ") + factor), HasSubstr("--group"));
   EXPECT_THAT(one_line_error(common + "--checkpoint c --resume"), HasSubstr("light groups"));
   ASSERT_EQ(run(common + "--checkpoint c --light-groups --resume"), 0) << text("err");

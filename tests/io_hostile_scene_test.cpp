@@ -46,6 +46,27 @@ TEST(HostileScene, DeepNestingAndLongChainsOfNodesAreNoTrouble) {
   EXPECT_EQ(flatten(*scene).triangles.size(), 1u);
 }
 
+TEST(HostileScene, LightBeyondAllNumbersIsRefused) {
+  const TemporaryFolder folder;
+  const auto glowing = [](double strength) {
+    GltfBuilder lamp;
+    lamp.add_triangle(
+        {{"emissiveFactor", {1, 1, 1}},
+         {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", strength}}}}}});
+    return lamp.glb();
+  };
+  EXPECT_EQ(refusal(folder, glowing(1e9)), "");
+  EXPECT_THAT(refusal(folder, glowing(1e20)), HasSubstr("too large"));
+  EXPECT_THAT(refusal(folder, glowing(-1.0)), HasSubstr("negative"));
+  for (const char* light : {"Ke 1 -1 1\n", "Ke 1e20\n"}) {
+    folder.write("m.mtl", std::string("newmtl lamp\n") + light);
+    const auto scene = load_scene(folder.write("lamp.obj", "mtllib m.mtl\n"));
+    ASSERT_TRUE(scene);
+    EXPECT_EQ(scene->materials[MaterialId(0)].emission, Rgb(0.f));
+    EXPECT_THAT(scene->warnings, testing::Contains(HasSubstr("m.mtl:2: 'Ke'")));
+  }
+}
+
 TEST(HostileScene, SmallFilesThatClaimGigabytesAreRefused) {
   const TemporaryFolder folder;
   GltfBuilder zeros;

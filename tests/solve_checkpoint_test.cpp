@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 class StateBytes {
  public:
   explicit StateBytes(const SolverState& state) : tree_(state.tree) {
-    for_each_field(state, [&](std::string_view, const auto& field) { add(field); });
+    for_each_field(state, [&](std::string_view, const auto& field, auto&&...) { add(field); });
   }
   friend bool operator==(const StateBytes& a, const StateBytes& b) { return a.bytes_ == b.bytes_; }
 
@@ -175,8 +175,47 @@ TEST_P(StoredSolve, NonsenseIsNeverTakenForAState) {
                  [](SolverState& s) { s.schedule.receivers.push_back(ElementId()); });
   expect_refused("a stage that does not exist",
                  [](SolverState& s) { s.schedule.stage = static_cast<Stage>(17); });
-  expect_refused("infinite light",
-                 [](SolverState& s) { s.irradiance[ElementId(0)].r = kInfinity; });
+  expect_refused("a weight beyond all sense",
+                 [&](SolverState& s) { with_first_link(s, [](Link& l) { l.weight = 1e20f; }); });
+  expect_refused("an error below nothing",
+                 [&](SolverState& s) { with_first_link(s, [](Link& l) { l.error = -1.f; }); });
+  for (const float light : {kInfinity, -1.f, 1e30f})
+    expect_refused("light that cannot be",
+                   [&](SolverState& s) { s.irradiance[ElementId(0)].r = light; });
+  expect_refused("more reflected than falls on it",
+                 [](SolverState& s) { s.reflectance[ElementId(1)].g = 1.5f; });
+  expect_refused("no tolerance at all", [](SolverState& s) { s.tolerance[ElementId(0)] = 0.f; });
+  expect_refused("an error beyond all sense aimed at",
+                 [](SolverState& s) { s.schedule.coarseness = 1e30f; });
+  expect_refused("a level beyond the last", [](SolverState& s) { s.schedule.level = 9; });
+  expect_refused("a level before the first", [](SolverState& s) { s.schedule.level = -1; });
+  expect_refused("links of a round to come", [](SolverState& s) {
+    s.sampled[ElementId(0)] = static_cast<std::uint8_t>(s.schedule.round + 1);
+  });
+  expect_refused("more receivers than there are", [](SolverState& s) {
+    s.schedule.receivers.assign(s.schedule.receiver_total + 1, s.tree.root());
+  });
+  expect_refused("more pairs than links", [](SolverState& s) {
+    s.schedule.pairs.assign(s.links.size() + 2, {s.tree.root(), s.tree.root()});
+  });
+  expect_refused("other options than those asked for",
+                 [](SolverState& s) { s.options.levels = 7; });
+  expect_refused("next to no error aimed at", [](SolverState& s) { s.options.error = 1e-30f; });
+  expect_refused("more error aimed at than asked for",
+                 [](SolverState& s) { s.options.error *= 2.f; });
+  expect_refused("a cell that was split without end", [](SolverState& s) {
+    ElementId e(0);
+    while (!s.tree[e].is_leaf_cell()) e = s.tree[e].children()[0];
+    for (int k = 0; k < 60; ++k) {
+      s.tree.split(e);
+      e = s.tree[e].children()[0];
+    }
+    const std::size_t n = s.tree.size();
+    for_each_field(s, [n]<class Field>(std::string_view, Field& field, auto&&...) {
+      if constexpr (requires { field.raw(); }) field.resize(field.empty() ? 0 : n);
+    });
+    s.tolerance.raw().assign(n, 1.f);
+  });
   expect_refused("too few values", [](SolverState& s) { s.tolerance.raw().pop_back(); });
   expect_refused("no values", [](SolverState& s) { s.radiosity.clear(); });
   expect_refused("more cells than values", [](SolverState& s) {
@@ -267,7 +306,11 @@ TEST(Settings, NonsenseIsRefused) {
   };
   EXPECT_FALSE(parse_settings(with("error 0.05", "error nan")));
   EXPECT_FALSE(parse_settings(with("error 0.05", "error -1")));
+  EXPECT_FALSE(parse_settings(with("error 0.05", "error 0")));
+  EXPECT_FALSE(parse_settings(with("error 0.05", "error 1e9")));
   EXPECT_FALSE(parse_settings(with("levels 3", "levels 3x")));
+  EXPECT_FALSE(parse_settings(with("levels 3", "levels 0")));
+  EXPECT_FALSE(parse_settings(with("levels 3", "levels 2000000000")));
   EXPECT_FALSE(parse_settings(with("visibility multires", "visibility sharp")));
   EXPECT_FALSE(parse_settings(with("links sampled", "links woven")));
 }

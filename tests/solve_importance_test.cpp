@@ -48,6 +48,18 @@ TEST(FeatureSizes, RuleThatMatchesNothingIsAnError) {
   EXPECT_NE(missing.error().line().find("Unobtainium"), std::string::npos);
 }
 
+// Trying what each star covers would take longer than the universe has been there.
+TEST(FeatureSizes, RulesOfManyStarsAreAnsweredAtOnce) {
+  Scene scene = doorway_scene();
+  for (Material& m : scene.materials) m.name = std::string(200, 'a');
+  const auto world = make_world(std::move(scene));
+  std::string stars;
+  for (int i = 0; i < 60; ++i) stars += "*a";
+  EXPECT_TRUE(check_rules({{stars, "", 0.1f}}, *world, "rules.toml"));
+  EXPECT_TRUE(check_rules({{stars + "***", "", 0.1f}}, *world, "rules.toml"));
+  EXPECT_FALSE(check_rules({{stars + "*b", "", 0.1f}}, *world, "rules.toml"));
+}
+
 TEST(FeatureSizes, PixelsGrowWithDistance) {
   const auto world = make_world(doorway_scene());
   const Surfaces surfaces = build_surfaces(world->geometry);

@@ -29,7 +29,8 @@ bool parse_factor(std::string_view text, Rgb& factor) {
     const std::size_t end = std::min(text.find(','), text.size());
     float& value = factor[count++];
     const auto [stop, error] = std::from_chars(text.data(), text.data() + end, value);
-    if (error != std::errc() || stop != text.data() + end || !std::isfinite(value) || value < 0.f)
+    if (error != std::errc() || stop != text.data() + end ||
+        !(value >= 0.f && value <= kLargestFactor))
       return false;
     if (end == text.size()) break;
     text.remove_prefix(end + 1);

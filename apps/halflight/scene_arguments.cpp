@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <map>
 
+#include "halflight/scene/radiance.h"
+
 namespace halflight::app {
 namespace {
 
@@ -29,7 +31,8 @@ void set_up_axis(const std::string& name, LoadOptions& load) {
 
 std::string check_radiance(const std::string& text) {
   double value = 0.0;
-  const bool valid = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0.0;
+  const bool valid =
+      CLI::detail::lexical_cast(text, value) && value >= 0.0 && value <= double{kMaxRadiance};
   return valid ? std::string() : "'" + text + "' is not a radiance: three numbers >= 0, as 1,1,1";
 }
 

@@ -13,6 +13,7 @@
 #include "halflight/output/choose_view.h"
 #include "halflight/rays/automatic_view.h"
 #include "halflight/rays/path_tracer.h"
+#include "halflight/solve/settings.h"
 #include "terminal_progress.h"
 
 namespace halflight::app {
@@ -87,7 +88,10 @@ Result<SolvePlan> resolve(const SolveArguments& arguments) {
   if (!arguments.error.empty()) {
     const Result<double> error = parse_percent(arguments.error);
     if (!error) return tl::unexpected(error.error());
-    if (!(*error > 0.0)) return input_error("--error must be above zero", {}, "try 1%");
+    if (!(*error >= double{kLeastError} && *error <= double{kLargestError}))
+      return input_error(fmt::format("--error must lie between {:g}% and {:g}%", 100 * kLeastError,
+                                     100 * kLargestError),
+                         {}, "try 1%");
     plan.options.error = static_cast<float>(*error);
     plan.goals.error = plan.options.error;
   }

@@ -1,5 +1,7 @@
 #include "halflight/io/gltf_fixtures.h"
 
+#include "halflight/scene/radiance.h"
+
 namespace halflight {
 namespace {
 
@@ -56,7 +58,7 @@ Light read_light(const JsonCursor& json) {
   light.intensity = Rgb(1.f);
   json.read_numbers("color", 3, light.intensity);
   light.intensity *= json.float_or("intensity", 1.f);
-  if (min_component(light.intensity) < 0.f || !is_finite(light.intensity))
+  if (!is_radiance(light.intensity))
     json.fail("the intensity is negative or too large", "give it in candela or lux");
   if (const auto range = json.find("range")) light.range = positive(*range);
   if (light.kind == Light::Kind::spot) read_cone(json, light);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "halflight/scene/radiance.h"
+
 namespace halflight {
 namespace {
 
@@ -98,7 +100,7 @@ void GltfMaterials::read_emission(const JsonCursor& json, Material& m) {
   json.read_numbers("emissiveFactor", 3, m.emission);
   if (const auto strength = json.extension("KHR_materials_emissive_strength"))
     m.emission *= strength->float_or("emissiveStrength", 1.f);
-  if (min_component(m.emission) < 0.f || !is_finite(m.emission))
+  if (!is_radiance(m.emission))
     json.fail("the emission is negative or too large", "give it a radiance in W/m2/sr or nits");
   if (const auto texture = json.find("emissiveTexture"); texture && m.emits())
     m.emission_texture = read_texture_ref(*texture);

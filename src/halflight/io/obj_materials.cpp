@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "halflight/io/text_lines.h"
+#include "halflight/scene/radiance.h"
 
 namespace halflight {
 namespace {
@@ -78,10 +79,14 @@ void apply(const Draft& draft, Material& m) {
   m.alpha_mode = opaque ? AlphaMode::opaque : AlphaMode::blend;
 }
 
-// False when the statement is one of these and its numbers cannot be read.
+// False when the statement is one of these and its numbers cannot be read, or be light.
 bool read_numbers(std::string_view key, LineWords words, Draft& draft) {
   if (key == "Kd") return (draft.reflectance = read_colour(words)).has_value();
-  if (key == "Ke") return (draft.emission = read_colour(words)).has_value();
+  if (key == "Ke") {
+    draft.emission = read_colour(words);
+    if (draft.emission && !is_radiance(*draft.emission)) draft.emission.reset();
+    return draft.emission.has_value();
+  }
   if (key == "Tr") return (draft.transparency = to_number(words.word())).has_value();
   if (key != "d") return true;
   if (words.rest().starts_with("-halo")) words.word();
@@ -118,7 +123,7 @@ void ObjMaterials::read_library(Bytes text, const std::filesystem::path& path) {
     } else if (current.valid()) {
       if (!read_numbers(key, words, draft))
         warnings_.add(path.string() + ":" + std::to_string(lines.number()) + ": '" +
-                      std::string(key) + "' has no number that can be read; it is ignored");
+                      std::string(key) + "' has no number that can be used; it is ignored");
       read_maps(key, words.rest(), path.parent_path(), scene_.materials[current]);
     }
   }

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kTextureSamples = 8;
 constexpr std::uint32_t kPointsOfCell = 4;
 // Cells that receive much get more points: a share of all received power for each.
-constexpr float kShareOfPoint = 1e-4f;
+constexpr double kShareOfPoint = 1e-4;
 constexpr std::uint32_t kMostPoints = 16;
 constexpr int kSkyRays = 16;  // of each point
 
@@ -20,7 +20,7 @@ constexpr DirectLightOptions kCellDirectLight{
 // Cells that get less than a point's share, and are not much brighter than others.
 constexpr DirectLightOptions kSlightDirectLight{
     .shadow_rays = 2, .penumbra_rays = 2, .largest_group_share = 0.2f, .smallest_angle = 0.01f};
-constexpr float kBright = 3.f;                  // in mean irradiances
+constexpr double kBright = 3.0;                 // in mean irradiances
 constexpr float kErrorOfAllShadowRays = 0.05f;  // larger ones take fewer, in proportion
 constexpr int kFewestShadowRays = 2;
 
@@ -42,41 +42,39 @@ bool is_buried(const SolverState& state, const Vec3& x, const Vec3& n, std::uint
   return hit && !state.tree.leaf_hit(*hit).valid();
 }
 
-float received_power(const SolverState& state, ElementId cell) {
-  return state.tree[cell].area * average(state.irradiance[cell]);
+double received_power(const SolverState& state, ElementId cell) {
+  return static_cast<double>(state.tree[cell].area) *
+         static_cast<double>(average(state.irradiance[cell]));
 }
 
-float received_power(const SolverState& state) {
-  return static_cast<float>(parallel_sum(state.tree.size(), 4096, 0.0, [&](std::size_t i) {
+double received_power(const SolverState& state) {
+  return parallel_sum(state.tree.size(), 4096, 0.0, [&](std::size_t i) {
     const ElementId e(i);
-    return state.tree[e].is_leaf_cell() ? static_cast<double>(received_power(state, e)) : 0.0;
-  }));
+    return state.tree[e].is_leaf_cell() ? received_power(state, e) : 0.0;
+  });
 }
 
 // By what has been known before, so that the number has nothing to do with what is found.
-std::uint32_t points_of(const SolverState& state, ElementId cell, float total_power) {
+std::uint32_t points_of(const SolverState& state, ElementId cell, double total_power) {
   const bool whole_and_small = state.tree.cell_size(cell) < 2.f * smallest_cell(state, cell);
-  const float share = received_power(state, cell) / std::max(total_power, 1e-30f);
-  // A checkpoint may hold any numbers; what is none of them counts as 0.
-  const float most = static_cast<float>(kMostPoints);
-  const float points = std::min(std::max(0.f, share / kShareOfPoint), most);
+  const double share = received_power(state, cell) / std::max(total_power, 1e-30);
+  const double points = std::min(share / kShareOfPoint, double{kMostPoints});
   return std::max(static_cast<std::uint32_t>(points), whole_and_small ? 1u : kPointsOfCell);
 }
 
 // Where a cell's light is noisy, little is lost if it is one of many like it.
-bool is_slight(const SolverState& state, ElementId cell, float total_power) {
-  const float mean = total_power / state.tree[state.tree.root()].area;
+bool is_slight(const SolverState& state, ElementId cell, double total_power) {
+  const double mean = total_power / static_cast<double>(state.tree[state.tree.root()].area);
   return received_power(state, cell) < kShareOfPoint * total_power &&
-         average(state.irradiance[cell]) < kBright * mean;
+         static_cast<double>(average(state.irradiance[cell])) < kBright * mean;
 }
 
-DirectLightOptions cell_direct_light(const SolverState& state, ElementId cell, float total_power) {
+DirectLightOptions cell_direct_light(const SolverState& state, ElementId cell, double total_power) {
   const bool slight = is_slight(state, cell, total_power);
   DirectLightOptions options = slight ? kSlightDirectLight : kCellDirectLight;
   const float share = std::min(1.f, kErrorOfAllShadowRays / aimed_error(state));
-  options.shadow_rays =
-      std::clamp(static_cast<int>(share * static_cast<float>(options.shadow_rays)),
-                 kFewestShadowRays, options.shadow_rays);
+  const auto rays = static_cast<int>(share * static_cast<float>(options.shadow_rays));
+  options.shadow_rays = std::max(kFewestShadowRays, rays);
   options.penumbra_rays = options.shadow_rays;
   options.feature_size = state.feature_sizes[cell];
   return options;
@@ -249,7 +247,7 @@ void update_given_light(SolverState& state, float irradiance_threshold) {
     if (state.tree[e].is_leaf_cell() && !state.given_light_known[e]) open.push_back(e);
   }
   const float scene_area = state.tree[state.tree.root()].area;
-  const float total_power = received_power(state);
+  const double total_power = received_power(state);
   bool may_split = true;
   while (!open.empty()) {
     std::vector<std::uint8_t> uneven(open.size());

@@ -1,18 +1,17 @@
 #include "halflight/solve/checkpoint.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <concepts>
 #include <new>
 
 #include <fmt/format.h>
 
-#include "halflight/base/parallel.h"
+#include "halflight/scene/radiance.h"
 #include "halflight/scene/scene_digest.h"
+#include "halflight/solve/cells.h"
+#include "halflight/solve/checkpoint_fields.h"
 #include "halflight/solve/mix.h"
 #include "halflight/solve/settings.h"
-#include "halflight/solve/state_fields.h"
 
 namespace halflight {
 namespace {
@@ -34,9 +33,11 @@ std::vector<ElementId> splits_of(const ElementTree& tree) {
   return splits;
 }
 
-bool replay(ElementTree& tree, const std::vector<ElementId>& splits) {
+bool replay(SolverState& state, const std::vector<ElementId>& splits) {
+  ElementTree& tree = state.tree;
   for (const ElementId e : splits) {
     if (e.value >= tree.size() || !tree[e].is_leaf_cell()) return false;
+    if (!(tree.cell_size(e) > 2.f * finest_cell(state))) return false;
     tree.split(e);
     if (tree[e].is_leaf()) return false;
   }
@@ -50,153 +51,22 @@ IdVector<SideId, std::uint8_t> live_sides_of(const SolverState& state) {
   return live;
 }
 
-// Whether values that were read could be those of a state over this tree.
-class Judge {
- public:
-  explicit Judge(const ElementTree& tree) : tree_(tree) {}
-
-  bool operator()(float v) const { return std::isfinite(v); }
-  bool operator()(const Rgb& v) const { return is_finite(v); }
-  bool operator()(Stage v) const { return v <= Stage::done; }
-  bool operator()(MaterialId) const { return true; }  // judged by the scene
-  bool operator()(LightId) const { return true; }
-  bool operator()(ElementId e) const { return e.value < tree_.size(); }
-  bool operator()(const ElementPair& p) const { return (*this)(p.receiver) && (*this)(p.source); }
-  bool operator()(const Link& l) const {
-    return (*this)(l.source) && (*this)(l.weight) && (*this)(l.error) && l.error >= 0.f &&
-           (l.weight >= 0.f || l.weight == Link::kUnsampled);
-  }
-  template <std::integral Number>
-  bool operator()(Number v) const {
-    return v >= 0;
-  }
-  template <class T>
-  bool operator()(const std::vector<T>& items) const {
-    std::atomic<bool> sound{true};
-    parallel_for(items.size(), 4096, [&](std::size_t i) {
-      if (!(*this)(items[i])) sound.store(false, std::memory_order_relaxed);
-    });
-    return sound;
-  }
-
- private:
-  const ElementTree& tree_;
-};
-
-std::string counts_of(std::string_view links) { return fmt::format("{} of each", links); }
-
-// One way to store each kind of field.
-class FieldWriter {
- public:
-  FieldWriter(SectionWriter& file, const ElementTree& tree) : file_(file), tree_(tree) {}
-
-  template <class T>
-  void operator()(std::string_view name, const T& value) const {
-    file_.add_value(name, value);
-  }
-  template <class T>
-  void operator()(std::string_view name, const std::vector<T>& items) const {
-    file_.add(name, items);
-  }
-  template <class T>
-  void operator()(std::string_view name, const IdVector<ElementId, T>& items) const {
-    file_.add(name, items.raw());
-  }
-  void operator()(std::string_view name, const LinkTable& table) const {
-    std::vector<std::uint32_t> counts(tree_.size());
-    std::vector<Link> links;
-    links.reserve(table.size());
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-      const auto row = table.of(ElementId(i));
-      counts[i] = static_cast<std::uint32_t>(row.size());
-      links.insert(links.end(), row.begin(), row.end());
-    }
-    file_.add(counts_of(name), counts);
-    file_.add(name, links);
-  }
-
- private:
-  SectionWriter& file_;
-  const ElementTree& tree_;
-};
-
-// The same fields back again; stops at the first that is wrong.
-class FieldReader {
- public:
-  FieldReader(const SectionReader& file, const ElementTree& tree)
-      : file_(file), tree_(tree), judge_(tree) {}
-
-  Result<void> result() const { return done_; }
-
-  template <class T>
-  void operator()(std::string_view name, T& value) const {
-    const auto items = read<T>(name);
-    if (!done_) return;
-    if (items.size() == 1)
-      value = items.front();
-    else
-      done_ = file_.damaged(name);
-  }
-  template <class T>
-  void operator()(std::string_view name, std::vector<T>& items) const {
-    items = read<T>(name);
-  }
-  template <class T>
-  void operator()(std::string_view name, IdVector<ElementId, T>& items) const {
-    auto values = read<T>(name);
-    if (!done_) return;
-    const bool none = items.empty() && values.empty();
-    if (values.size() == tree_.size() || none)
-      items.raw() = std::move(values);
-    else
-      done_ = file_.damaged(name);
-  }
-  void operator()(std::string_view name, LinkTable& table) const {
-    const auto counts = read<std::uint32_t>(counts_of(name));
-    auto links = read<Link>(name);
-    if (!done_) return;
-    std::uint64_t total = 0;
-    for (const std::uint32_t n : counts) total += n;
-    if (counts.size() == tree_.size() && total == links.size())
-      table = LinkTable(counts, std::move(links));
-    else
-      done_ = file_.damaged(name);
-  }
-
- private:
-  template <class T>
-  std::vector<T> read(std::string_view name) const {
-    if (!done_) return {};
-    auto items = file_.array<T>(name);
-    if (!items)
-      done_ = tl::unexpected(items.error());
-    else if (!judge_(*items))
-      done_ = file_.damaged(name);
-    return done_ ? std::move(*items) : std::vector<T>();
-  }
-
-  const SectionReader& file_;
-  const ElementTree& tree_;
-  Judge judge_;
-  mutable Result<void> done_;
-};
-
 std::string section_of_record(std::string_view field) { return fmt::format("history: {}", field); }
 
 void write_history(const FieldWriter& write, const std::vector<IterationRecord>& history) {
-  for_each_record_field([&](std::string_view name, auto member) {
+  for_each_record_field([&](std::string_view name, auto member, const auto&... range) {
     std::vector<std::decay_t<decltype(history.front().*member)>> column;
     for (const IterationRecord& record : history) column.push_back(record.*member);
-    write(section_of_record(name), column);
+    write(section_of_record(name), column, range...);
   });
 }
 
 // False where the columns are not all as long.
 bool read_history(const FieldReader& read, std::vector<IterationRecord>& history) {
   bool equal = true, first = true;
-  for_each_record_field([&](std::string_view name, auto member) {
+  for_each_record_field([&](std::string_view name, auto member, const auto&... range) {
     std::vector<std::decay_t<decltype(std::declval<IterationRecord>().*member)>> column;
-    read(section_of_record(name), column);
+    read(section_of_record(name), column, range...);
     if (first) history.resize(column.size());
     first = false;
     equal = equal && column.size() == history.size();
@@ -208,6 +78,16 @@ bool read_history(const FieldReader& read, std::vector<IterationRecord>& history
 std::string to_text(const Rgb& c) { return fmt::format("{},{},{}", c.r, c.g, c.b); }
 
 std::string number_of(std::size_t group) { return fmt::format("group {}", group); }
+
+// Whether what was sound one by one fits together.
+bool fits_together(const SolverState& state) {
+  const Schedule& todo = state.schedule;
+  const auto waiting = todo.receivers.size();
+  return todo.level <= state.options.levels + 1 && waiting <= todo.receiver_total &&
+         todo.receiver_total <= state.tree.size() && (waiting == 0 || todo.round > 0) &&
+         todo.pairs.size() <= std::max<std::size_t>(1, state.links.size()) &&
+         std::ranges::all_of(state.sampled.raw(), [&](auto round) { return round <= todo.round; });
+}
 
 // Names and members; the light only once it is known.
 void write_groups(SectionWriter& file, const FieldWriter& write, const GroupedLight& grouped) {
@@ -231,7 +111,7 @@ void write_groups(SectionWriter& file, const FieldWriter& write, const GroupedLi
 
 Result<void> read_groups(const SectionReader& file, const FieldReader& read, const Scene& scene,
                          GroupedLight& grouped) {
-  read("groups", grouped.factors);
+  read("groups", grouped.factors, {0.0, double{kLargestFactor}});
   grouped.groups.resize(grouped.factors.size());
   for (std::size_t g = 0; g < grouped.groups.size(); ++g) {
     LightGroup& group = grouped.groups[g];
@@ -253,13 +133,27 @@ Result<void> read_groups(const SectionReader& file, const FieldReader& read, con
   int separated = 0;
   read("groups separated", separated);
   if (separated == 0) return {};
-  read("groups' exitance", grouped.exitance);
+  read("groups' exitance", grouped.exitance, kLight);
   grouped.light.resize(grouped.groups.size());
   for (std::size_t g = 0; g < grouped.light.size(); ++g) {
-    read(number_of(g) + " given light", grouped.light[g].given_light);
-    read(number_of(g) + " irradiance", grouped.light[g].irradiance);
+    read(number_of(g) + " given light", grouped.light[g].given_light, kLight);
+    read(number_of(g) + " irradiance", grouped.light[g].irradiance, kLight);
   }
   return {};
+}
+
+// How a scene is placed and lit; the same limits as for what is asked for.
+bool is_sound(const SceneSource& source) {
+  return std::isfinite(source.load.metres_per_unit) && source.load.metres_per_unit > 0.0 &&
+         is_radiance(source.sky);
+}
+
+// The options of the state are those asked for, but that it may aim at less error by now.
+bool may_become(const SolveOptions& asked, SolveOptions present) {
+  constexpr float kMostFiner = 1e6f;
+  const bool finer = present.error <= asked.error && present.error * kMostFiner >= asked.error;
+  present.error = asked.error;
+  return asked.error >= kLeastError && finer && difference(asked, present).empty();
 }
 
 // What light groups need that is not in the file.
@@ -338,13 +232,14 @@ Result<Checkpoint> Checkpoint::parse(Bytes bytes, const std::filesystem::path& p
   if (placement->size() != 1 || sky->size() != 1 || digest->size() != 1)
     return file.damaged("scene");
   const auto asked = parse_settings(*asked_text), options = parse_settings(*text);
-  if (!asked || !options) return file.damaged("settings");
+  if (!asked || !options || !may_become(*asked, *options)) return file.damaged("settings");
 
   SceneSource& source = checkpoint.origin_.scene;
   source.path = path.parent_path() / *scene;
   source.load.metres_per_unit = placement->front().metres_per_unit;
   source.load.up = placement->front().z_up != 0 ? UpAxis::z : UpAxis::y;
   source.sky = sky->front();
+  if (!is_sound(source)) return file.damaged("placement");
   checkpoint.origin_.scene_digest = digest->front();
   checkpoint.origin_.options = *asked;
   checkpoint.options_ = *options;
@@ -399,7 +294,7 @@ Result<SolverState> Checkpoint::restore(const std::shared_ptr<const World>& worl
     IdVector<SideId, std::uint8_t> live_sides;
     live_sides.raw() = std::move(*live);
     SolverState state = make_state(world, surfaces, live_sides, options_);
-    if (!replay(state.tree, *splits)) return sections_.damaged("splits");
+    if (!replay(state, *splits)) return sections_.damaged("splits");
     state.feature_sizes = state.feature_size_rules->of_elements(state.tree);
     const FieldReader read(sections_, state.tree);
     for_each_field(state, read);
@@ -408,7 +303,8 @@ Result<SolverState> Checkpoint::restore(const std::shared_ptr<const World>& worl
       return tl::unexpected(groups.error());
     if (!read.result()) return tl::unexpected(read.result().error());
     if (!equal) return sections_.damaged("history");
-    if (std::any_of(state.sampled.begin(), state.sampled.end(), [](auto round) { return round; }))
+    if (!fits_together(state)) return sections_.damaged("schedule");
+    if (state.schedule.round > 0)
       state.emitters =
           std::make_shared<EmitterTree>(*state.visibility, find_emitters(*state.world));
     if (!finish_groups(state)) return sections_.damaged("groups");

@@ -12,14 +12,25 @@ namespace {
 
 constexpr float kNone = -1.f;
 
+// Where it goes wrong, the last star covers one more character: no earlier one has to change.
 bool matches(std::string_view name, std::string_view pattern) {
-  if (pattern.empty()) return name.empty();
-  if (pattern.front() != '*')
-    return !name.empty() && name.front() == pattern.front() &&
-           matches(name.substr(1), pattern.substr(1));
-  for (std::size_t skipped = 0; skipped <= name.size(); ++skipped)
-    if (matches(name.substr(skipped), pattern.substr(1))) return true;
-  return false;
+  constexpr std::size_t kNoStar = std::string_view::npos;
+  std::size_t n = 0, p = 0, star = kNoStar, covered = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      covered = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++n;
+      ++p;
+    } else if (star != kNoStar) {
+      p = star + 1;
+      n = ++covered;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
 }
 
 bool node_matches(const Scene& scene, NodeId node, std::string_view pattern) {

@@ -12,7 +12,6 @@ namespace halflight {
 namespace {
 
 constexpr std::size_t kGrain = 1024;
-constexpr float kLargestFactor = 1e6f;  // by which a group is made brighter to be balanced
 
 // Of each material, the group that it shines with; the number of groups: none.
 IdVector<MaterialId, std::size_t> groups_of_materials(const SolverState& state) {

@@ -9,6 +9,8 @@
 
 namespace halflight {
 
+inline constexpr float kLargestFactor = 1e6f;  // by which a group is made brighter
+
 // Makes the state one of several groups, before its first iteration.
 void set_groups(SolverState& state, std::vector<LightGroup> groups);
 

@@ -22,7 +22,8 @@ const char* name_of(Stage stage) {
 }
 
 std::size_t ErrorHistogram::bin_of(float relative_error) {
-  const float position = std::log(std::max(relative_error, 1.f)) / std::log(kLargestRelativeError);
+  const float error = std::clamp(relative_error, 1.f, kLargestRelativeError);
+  const float position = std::log(error) / std::log(kLargestRelativeError);
   return std::min(static_cast<std::size_t>(position * static_cast<float>(kBins)), kBins - 1);
 }
 

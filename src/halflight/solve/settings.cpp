@@ -54,21 +54,22 @@ bool find_in(const std::array<std::pair<T, std::string_view>, n>& table, std::st
 
 using Json = nlohmann::ordered_json;
 
+bool from_json(const Json& j, float& v) {
+  if (!j.is_number()) return false;
+  v = j.get<float>();
+  return std::isfinite(v);
+}
 Json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
 bool from_json(const Json& j, Vec3& v) {
-  if (!j.is_array() || j.size() != 3) return false;
-  for (int k = 0; k < 3; ++k) {
-    if (!j[k].is_number()) return false;
-    v[k] = j[k].get<float>();
-  }
-  return true;
+  return j.is_array() && j.size() == 3 && from_json(j[0], v.x) && from_json(j[1], v.y) &&
+         from_json(j[2], v.z);
 }
 Json to_json(const FeatureSizeRule& r) { return {r.material, r.node, r.feature_size}; }
 bool from_json(const Json& j, FeatureSizeRule& r) {
-  if (!j.is_array() || j.size() != 3 || !j[0].is_string() || !j[1].is_string() || !j[2].is_number())
-    return false;
-  r = {j[0].get<std::string>(), j[1].get<std::string>(), j[2].get<float>()};
-  return r.feature_size >= 0.f;
+  if (!j.is_array() || j.size() != 3 || !j[0].is_string() || !j[1].is_string()) return false;
+  r.material = j[0].get<std::string>();
+  r.node = j[1].get<std::string>();
+  return from_json(j[2], r.feature_size) && r.feature_size >= 0.f;
 }
 Json to_json(const ViewOfInterest& v) {
   const PlacedCamera& c = v.camera;
@@ -79,13 +80,11 @@ bool from_json(const Json& j, ViewOfInterest& v) {
   constexpr int kLargestSide = 1 << 20;
   PlacedCamera& c = v.camera;
   if (!j.is_array() || j.size() != 8 || !from_json(j[0], c.position) ||
-      !from_json(j[1], c.forward) || !from_json(j[2], c.up) || !j[3].is_boolean())
+      !from_json(j[1], c.forward) || !from_json(j[2], c.up) || !j[3].is_boolean() ||
+      !from_json(j[4], c.vertical_fov) || !from_json(j[5], c.half_height) || !j[6].is_number() ||
+      !j[7].is_number())
     return false;
-  for (int k = 4; k < 8; ++k)
-    if (!j[k].is_number()) return false;
   c.perspective = j[3].get<bool>();
-  c.vertical_fov = j[4].get<float>();
-  c.half_height = j[5].get<float>();
   const double width = j[6].get<double>(), height = j[7].get<double>();
   if (!(width >= 1.0 && width <= kLargestSide && height >= 1.0 && height <= kLargestSide))
     return false;
@@ -95,9 +94,8 @@ bool from_json(const Json& j, ViewOfInterest& v) {
 }
 Json to_json(const PixelFeatureSize& p) { return {to_json(p.view), p.pixels}; }
 bool from_json(const Json& j, PixelFeatureSize& p) {
-  if (!j.is_array() || j.size() != 2 || !from_json(j[0], p.view) || !j[1].is_number()) return false;
-  p.pixels = j[1].get<float>();
-  return p.pixels > 0.f;
+  return j.is_array() && j.size() == 2 && from_json(j[0], p.view) && from_json(j[1], p.pixels) &&
+         p.pixels > 0.f;
 }
 
 std::string text_of(const std::vector<FeatureSizeRule>& rules) {
@@ -181,8 +179,10 @@ std::optional<SolveOptions> parse_settings(std::string_view text) {
             parse(line.substr(name.size() + 1), value);
     text.remove_prefix(std::min(end + 1, text.size()));
   });
-  if (!valid || !text.empty()) return std::nullopt;
-  return options;
+  constexpr int kMostLevels = 16;
+  valid = valid && text.empty() && options.error > 0.f && options.error <= kLargestError &&
+          options.levels >= 1 && options.levels <= kMostLevels;
+  return valid ? std::optional(options) : std::nullopt;
 }
 
 std::string difference(const SolveOptions& there, const SolveOptions& here) {

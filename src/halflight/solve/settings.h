@@ -9,6 +9,8 @@
 
 namespace halflight {
 
+inline constexpr float kLeastError = 1e-6f, kLargestError = 100.f;  // that can be aimed at
+
 // One line "name value" for each option; numbers are the shortest that read back the same.
 std::string to_text(const SolveOptions& options);
 // None where a line is missing, unknown or out of range.

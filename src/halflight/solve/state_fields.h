@@ -2,49 +2,74 @@
 // cells apart, what is not listed here follows from the scene, the options and what is listed.
 #pragma once
 
+#include <limits>
+
+#include "halflight/solve/importance.h"
 #include "halflight/solve/solver.h"
+#include "halflight/solve/sweep.h"
 
 namespace halflight {
 
-// visit(name, field) for arrays over elements, link tables, lists and single values. Learnt costs
-// are left out: they depend on the machine's mood.
+// What a solve writes lies between these.
+struct Range {
+  double least = 0.0;
+  double most = 1.0;
+};
+inline constexpr Range kShare{};
+// W/m2. Scenes shine with kMaxRadiance at most, and lamps count by the square of the distance.
+// Floats hold what comes of it by areas and weights.
+inline constexpr Range kLight{0.0, 1e24};
+inline constexpr Range kThreshold{0.0, double{std::numeric_limits<float>::max()}};
+inline constexpr Range kTolerance{1e-3, 1e3};
+inline constexpr Range kImportance{double{kLeastImportance}, 1.0};
+inline constexpr Range kWeight{0.0, 1e8};  // of links; what they hit may be next to transparent
+inline constexpr Range kRounds{0.0, 64.0};
+inline constexpr Range kLevels{0.0, 64.0};
+inline constexpr Range kCount{0.0, 0x1p53};
+inline constexpr Range kCoarseness{1.0, 1e6};
+inline constexpr Range kSweeps{0.0, double{kMostSweeps}};
+
+// visit(name, field) for lists of ids, link tables and the stage, visit(name, field, range) for
+// numbers: arrays over elements and single values. Learnt costs are left out: they depend on the
+// machine's mood.
 template <class State, class Visit>
 void for_each_field(State& state, const Visit& visit) {
-  visit("opacity", state.opacity);
-  visit("reflectance", state.reflectance);
-  visit("exitance", state.exitance);
-  visit("sampled", state.sampled);
-  visit("given light", state.given_light);
-  visit("given light known", state.given_light_known);
-  visit("outer light", state.outer_light);
-  visit("irradiance", state.irradiance);
-  visit("tolerance", state.tolerance);
-  visit("importance", state.importance);
-  visit("radiosity", state.radiosity);
+  visit("opacity", state.opacity, kShare);
+  visit("reflectance", state.reflectance, kShare);
+  visit("exitance", state.exitance, kLight);
+  visit("sampled", state.sampled, kRounds);
+  visit("given light", state.given_light, kLight);
+  visit("given light known", state.given_light_known, kShare);
+  visit("outer light", state.outer_light, kLight);
+  visit("irradiance", state.irradiance, kLight);
+  visit("tolerance", state.tolerance, kTolerance);
+  visit("importance", state.importance, kImportance);
+  visit("radiosity", state.radiosity, kLight);
   visit("links", state.links);
   visit("sampled links", state.sampled_links);
   visit("stage", state.schedule.stage);
-  visit("level", state.schedule.level);
-  visit("irradiance threshold", state.schedule.irradiance_threshold);
+  visit("level", state.schedule.level, kLevels);
+  visit("irradiance threshold", state.schedule.irradiance_threshold, kThreshold);
   visit("pairs to refine", state.schedule.pairs);
   visit("receivers to sample", state.schedule.receivers);
-  visit("receivers in all", state.schedule.receiver_total);
-  visit("round", state.schedule.round);
-  visit("coarseness", state.schedule.coarseness);
-  visit("short of memory", state.schedule.short_of_memory);
+  visit("receivers in all", state.schedule.receiver_total, kCount);
+  visit("round", state.schedule.round, kRounds);
+  visit("coarseness", state.schedule.coarseness, kCoarseness);
+  visit("short of memory", state.schedule.short_of_memory, kShare);
 }
 
-// visit(name, pointer to member). Seconds are left out: equal solves then give equal bytes.
+// visit(name, pointer to member) or visit(name, pointer to member, range). Seconds are left out:
+// equal solves then give equal bytes.
 template <class Visit>
 void for_each_record_field(const Visit& visit) {
   visit("stage", &IterationRecord::stage);
-  visit("irradiance threshold", &IterationRecord::irradiance_threshold);
-  visit("refined", &IterationRecord::refined);
-  visit("links", &IterationRecord::links);
-  visit("elements", &IterationRecord::elements);
-  visit("pairs", &IterationRecord::pairs);
-  visit("rays", &IterationRecord::rays);
-  visit("sweeps", &IterationRecord::sweeps);
+  visit("irradiance threshold", &IterationRecord::irradiance_threshold, kThreshold);
+  visit("refined", &IterationRecord::refined, kCount);
+  visit("links", &IterationRecord::links, kCount);
+  visit("elements", &IterationRecord::elements, kCount);
+  visit("pairs", &IterationRecord::pairs, kCount);
+  visit("rays", &IterationRecord::rays, kCount);
+  visit("sweeps", &IterationRecord::sweeps, kSweeps);
 }
 
 }  // namespace halflight

@@ -124,7 +124,9 @@ class ShownRadiosity {
     });
   }
   Rgb operator()(const SolverState& state, ElementId source, ElementId receiver) const {
-    if (state.sampled[receiver] != 0) return state.radiosity[source] - state.exitance[source];
+    // Reflected light alone; rounding must not make less than none of it.
+    if (state.sampled[receiver] != 0)
+      return glm::max(state.radiosity[source] - state.exitance[source], Rgb(0.f));
     if (!state.inside || !state.inside->knows(source)) return state.radiosity[source];
     return of_[state.inside->number(source)][cell_of(state, source, receiver)];
   }
