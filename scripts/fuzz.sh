@@ -5,8 +5,8 @@
 #
 # What the corpora grow by is kept in build/fuzz/corpus, inputs that fail go to build/fuzz/findings.
 # Fails when there is one. FUZZ_HANG (10) is how many seconds one input may take by the clock: more
-# where the machine is busy with other things. FUZZ_SEED makes a run from the same corpus try the same
-# inputs in the same order.
+# where the machine is busy with other things. FUZZ_SEED makes runs from the same corpus alike, but not
+# equal: what an input is seen to cover differs a little each time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:?usage: scripts/fuzz.sh SECONDS [TARGET...]}
@@ -33,7 +33,7 @@ longest() {  # bytes of an input
 }
 
 fuzz() {  # TARGET
-  local target=$1 dir places=() options=()
+  local target=$1 dir places=() options=() seeds="$build/logs/$target.seeds"
   mkdir -p "$build/corpus/$target" "$build/findings/$target"
   for dir in "fuzz/seeds/$target" "fuzz/regressions/$target" "$build/seeds/$target"; do
     [ ! -d "$dir" ] || places+=("$dir")
@@ -49,11 +49,13 @@ fuzz() {  # TARGET
       ;;
   esac
   [ ! -f "fuzz/dictionaries/$target.dict" ] || options+=("-dict=fuzz/dictionaries/$target.dict")
+  # By name, as folders list their files differently from machine to machine.
+  find "${places[@]}" -type f ! -name '*,*' | LC_ALL=C sort | paste -sd, | tr -d '\n' >"$seeds"
   "$build/bin/fuzz_$target" -seed="${FUZZ_SEED:-0}" -max_total_time="$seconds" \
     -timeout="${FUZZ_HANG:-10}" -rss_limit_mb=2048 \
     -max_len="$(longest "$target")" -print_final_stats=1 -report_slow_units=5 -close_fd_mask=1 \
-    -artifact_prefix="$build/findings/$target/" "${options[@]}" \
-    "$build/corpus/$target" "${places[@]}" >"$build/logs/$target" 2>&1 || true
+    -artifact_prefix="$build/findings/$target/" "${options[@]}" -seed_inputs="@$seeds" \
+    "$build/corpus/$target" >"$build/logs/$target" 2>&1 || true
 }
 
 report() {
