@@ -22,7 +22,3 @@ if(HALFLIGHT_FUZZ)
   target_compile_definitions(halflight_options INTERFACE
     FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION _GLIBCXX_ASSERTIONS)
 endif()
-if(HALFLIGHT_COVERAGE)
-  target_compile_options(halflight_options INTERFACE --coverage)
-  target_link_options(halflight_options INTERFACE --coverage)
-endif()
