@@ -19,7 +19,10 @@ done
 cmake --preset coverage >/dev/null
 cmake --build --preset coverage
 find build/coverage -name '*.gcda' -delete
-ctest --preset coverage --parallel "$(nproc)" "${options[@]}" || echo "some tests fail" >&2
+# Programs that are killed, or may write or start no more, leave torn counts.
+torn='Fault|Vanishing|FewThreads|Killed|kills|Interrupted'
+ctest --preset coverage --parallel "$(nproc)" --exclude-regex "$torn" "${options[@]}" ||
+  echo "some tests fail" >&2
 mkdir -p build/coverage/report
 gcovr --root . --filter 'src/halflight/' --exclude-throw-branches -j "$(nproc)" \
   --json build/coverage/report/lines.json build/coverage/src/halflight >/dev/null
