@@ -65,6 +65,17 @@ async function act(command: object): Promise<void> {
   }
 }
 
+// Where a processor stands for a graphics card it is the solver's, too: while the user looks around
+// it is asked to leave the processor to the picture.
+const kAskMilliseconds = 200
+let lastAsked = 0
+stage.onStruggle = () => {
+  const busy = status?.phase === 'solving' || status?.phase === 'sharpening'
+  if (!busy || lost || performance.now() - lastAsked < kAskMilliseconds) return
+  lastAsked = performance.now()
+  connection.control({ giveWay: true }).catch(() => {})
+}
+
 // Light and meshes, pulled one after the other as the versions rise.
 let pulling = false
 async function pull(): Promise<void> {
@@ -85,7 +96,7 @@ async function pull(): Promise<void> {
           continue
         }
         const first = stage.header === null
-        stage.show(topology, light, () => {})
+        stage.show(topology, light)
         autoExposure = light.header.exposure
         if (first) {
           stage.setView(topology.header.firstView)
@@ -105,9 +116,10 @@ async function pull(): Promise<void> {
 
 export function applyPicture(): void {
   shared.exposure.value = autoExposure * 2 ** picture.ev
-  setToneMap(picture.toneMap)
   const isError = layers.layer === 'error'
-  setShow(isError ? 'error' : picture.show)
+  const otherMap = setToneMap(picture.toneMap)
+  const otherShow = setShow(isError ? 'error' : picture.show)
+  if (otherMap || otherShow) stage.recompile()
   const factor = kUnits[picture.unit]
   if (picture.autoScale) {
     const high = factor * stage.highIlluminance()

@@ -1,17 +1,22 @@
 // The canvas: lit meshes as the server sends them, cameras, and drawing no more often than needed.
 import * as THREE from 'three'
-import { Packet } from './packet'
-import { shared, surfaceMaterial } from './surface'
+import { Antialias } from './antialias'
+import { Chunks } from './chunks'
+import { Pace } from './pace'
+import type { Packet } from './packet'
+import { disposeMaterial, recompile, shared, surfaceMaterials } from './surface'
 import type { View } from './connection'
 
-const kFrameMilliseconds = 33
-const kCoarsest = 0.5 // of the full resolution while the camera moves
 const kRestMilliseconds = 250
-const kLargeMesh = 500_000 // triangles: of larger meshes only the largest are drawn, as many as go
-const kMovingMilliseconds = 80 // a frame of a large mesh that moves
-const kStillMilliseconds = 700
+const kLargeMesh = 500_000 // triangles: of larger meshes the smallest may be left out
+const kLightShare = 0.4 // of the time, that may go into frames that only show new light
+const kStillMilliseconds = 700 // a frame of a large mesh at rest
 const kFirstRate = 1000 // triangles in a millisecond, until it is known
-const kFewestDrawn = 50_000
+
+interface Drawable {
+  geometry: THREE.BufferGeometry
+  chunks: Chunks
+}
 
 export class Stage {
   readonly scene = new THREE.Scene()
@@ -25,21 +30,31 @@ export class Stage {
   frameTimes: number[] = []
   beforeDraw: (seconds: number) => boolean = () => false
   afterDraw: () => void = () => {}
+  onStruggle: () => void = () => {} // frames of a movement come too slowly
 
   private mesh: THREE.Mesh | null = null
+  private whole: Drawable | null = null
+  private simple: Drawable | null = null // fewer triangles, or the same
+  private materials: [THREE.ShaderMaterial[], THREE.ShaderMaterial[]] = [[], []] // at rest, in a hurry
   private light: THREE.BufferAttribute | null = null
   private value: THREE.BufferAttribute | null = null
   private wanted = true
   private lastFrame = 0
   private lastMotion = 0
-  private resolution = 1
-  private applied = 0
+  private lastDrawn = 0
+  private wasMoving = false // in the last frame
+  private applied = 0 // resolution
+  private drawn = 0 // triangles
+  private inSight = 0
   private rate = kFirstRate
-  private drawn = 0 // triangles of a large mesh
-  private drawing: { fence: WebGLSync; since: number } | null = null
+  private cost = 0 // milliseconds of the last frame
+  private readonly fences: { sync: WebGLSync; since: number; triangles: number }[] = []
+  private readonly pace = new Pace()
+  private readonly antialias: Antialias
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true })
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false, preserveDrawingBuffer: true })
+    this.antialias = new Antialias(this.renderer)
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace // the shaders write sRGB themselves
     this.renderer.toneMapping = THREE.NoToneMapping
     this.renderer.setClearColor(0x000000)
@@ -53,7 +68,7 @@ export class Stage {
   }
 
   // Another mesh, shown at once with its first light.
-  show(topology: Packet, light: Packet, onTexture: () => void): void {
+  show(topology: Packet, light: Packet): void {
     const h = topology.header
     const geometry = new THREE.BufferGeometry()
     geometry.setAttribute('position', new THREE.BufferAttribute(topology.floats('positions'), 3))
@@ -64,21 +79,27 @@ export class Stage {
     this.light.setUsage(THREE.DynamicDrawUsage)
     this.value = null
     geometry.setAttribute('light', this.light)
-    const materials: THREE.Material[] = []
-    h.draws.forEach((d: any, i: number) => {
-      materials.push(surfaceMaterial(h.materials[d.material], d.emits, () => (onTexture(), this.draw())))
-      geometry.addGroup(3 * d.first, 3 * d.count, i)
+    const materials: typeof this.materials = [[], []]
+    h.draws.forEach((d: any) => {
+      const made = surfaceMaterials(h.materials[d.material], d.emits, () => this.draw())
+      made.forEach((m, i) => materials[i].push(m))
     })
     this.bounds.set(new THREE.Vector3(...h.bounds[0]), new THREE.Vector3(...h.bounds[1]))
-    geometry.boundingSphere = this.bounds.getBoundingSphere(new THREE.Sphere())
     this.dispose()
-    this.mesh = new THREE.Mesh(geometry, materials)
+    this.materials = materials
+    this.whole = { geometry, chunks: new Chunks(topology.words('chunks')) }
+    this.simple = this.whole
+    if (topology.has('simpleIndices')) {
+      const simple = new THREE.BufferGeometry()
+      for (const [name, attribute] of Object.entries(geometry.attributes)) simple.setAttribute(name, attribute)
+      simple.setIndex(new THREE.BufferAttribute(topology.words('simpleIndices'), 1))
+      this.simple = { geometry: simple, chunks: new Chunks(topology.words('simpleChunks')) }
+    }
+    this.mesh = new THREE.Mesh(geometry, materials[0])
     this.mesh.frustumCulled = false
     this.scene.add(this.mesh)
     this.header = h
     this.epoch = h.epoch
-    this.drawn = 0
-    this.chooseTriangles(true)
     const sky = h.sky as number[]
     this.scene.background = Math.max(...sky) > 0 ? new THREE.Color(0x9fb4c8) : new THREE.Color(0x101214)
     const far = 20 * Math.max(1e-3, this.bounds.getSize(new THREE.Vector3()).length())
@@ -94,7 +115,6 @@ export class Stage {
     const ranges = packet.words('ranges')
     const light = packet.words('light')
     const target = this.light.array as Uint32Array
-    this.light.clearUpdateRanges()
     let at = 0
     for (let i = 0; i < ranges.length; i += 2) {
       const [first, count] = [ranges[i], ranges[i + 1]]
@@ -109,11 +129,17 @@ export class Stage {
     return true
   }
 
+  // Other shaders: what is shown has changed, not only by how much.
+  recompile(): void {
+    this.materials.forEach(recompile)
+    this.draw()
+  }
+
   setValues(values: Float32Array): void {
     if (!this.mesh || values.length !== this.light?.count) return
     if (!this.value) {
       this.value = new THREE.BufferAttribute(new Float32Array(values.length), 1)
-      this.mesh.geometry.setAttribute('value', this.value)
+      for (const shape of [this.whole, this.simple]) shape?.geometry.setAttribute('value', this.value)
     }
     ;(this.value.array as Float32Array).set(values)
     this.value.needsUpdate = true
@@ -169,9 +195,14 @@ export class Stage {
     return { origin: caster.ray.origin.toArray(), direction: caster.ray.direction.toArray() }
   }
 
-  screenshot(): Promise<Blob> {
-    this.applyResolution(1)
-    this.renderer.render(this.scene, this.camera)
+  // All of the picture at once, however long it takes.
+  finish(): void {
+    this.render(1, false, Infinity)
+    while (!this.antialias.isDone()) this.smooth()
+  }
+
+  async screenshot(): Promise<Blob> {
+    this.finish()
     return new Promise((resolve, reject) =>
       this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('The picture could not be taken.')))),
     )
@@ -185,12 +216,9 @@ export class Stage {
   private dispose(): void {
     if (!this.mesh) return
     this.scene.remove(this.mesh)
-    this.mesh.geometry.dispose()
-    for (const m of this.mesh.material as THREE.ShaderMaterial[]) {
-      for (const name of ['map', 'emissionMap'])
-        if (!(m.uniforms[name].value instanceof THREE.DataTexture)) m.uniforms[name].value.dispose()
-      m.dispose()
-    }
+    this.whole?.geometry.dispose()
+    this.simple?.geometry.dispose()
+    this.materials.flat().forEach(disposeMaterial)
   }
 
   private resize(): void {
@@ -211,62 +239,80 @@ export class Stage {
     return (this.header?.triangles ?? 0) > kLargeMesh
   }
 
-  // Of a large mesh, whether the last frame has left the graphics card or what stands for one; how
-  // long it took tells how many triangles the next may have.
-  private isDrawn(): boolean {
-    if (!this.drawing) return true
+  // Frames that the graphics card, or what stands for one, still has to draw; how long the others
+  // took is known from then on.
+  private underWay(): number {
     const gl = this.renderer.getContext() as WebGL2RenderingContext
-    if (gl.clientWaitSync(this.drawing.fence, 0, 0) === gl.TIMEOUT_EXPIRED) return false
-    gl.deleteSync(this.drawing.fence)
-    const milliseconds = Math.max(1, performance.now() - this.drawing.since)
-    this.rate += 0.5 * (this.drawn / milliseconds - this.rate)
-    this.drawing = null
+    while (this.fences.length > 0) {
+      const { sync, since, triangles } = this.fences[0]
+      if (gl.clientWaitSync(sync, 0, 0) === gl.TIMEOUT_EXPIRED) break
+      gl.deleteSync(sync)
+      this.cost = Math.max(1, performance.now() - since)
+      this.rate += 0.5 * (triangles / this.cost - this.rate)
+      this.fences.shift()
+    }
+    return this.fences.length
+  }
+
+  private render(resolution: number, hurried: boolean, most: number): void {
+    this.applyResolution(resolution)
+    const shape = hurried ? this.simple : this.whole
+    if (this.mesh && shape) {
+      const chosen = shape.chunks.visible(this.camera, most)
+      this.mesh.geometry = shape.geometry
+      shape.geometry.groups = chosen.groups
+      this.mesh.material = this.materials[hurried ? 1 : 0]
+      this.drawn = chosen.drawn
+      this.inSight = chosen.triangles
+    }
+    this.renderer.render(this.scene, this.camera)
+    this.antialias.restart()
+  }
+
+  private smooth(): void {
+    this.antialias.add(this.camera, () => this.renderer.render(this.scene, this.camera))
+  }
+
+  // What is to be drawn now: nothing when nothing has changed. While something moves, resolution and
+  // small triangles are given up for pace; at rest the picture becomes whole again, then smooth.
+  private step(time: number, moving: boolean): boolean {
+    const inQueue = this.underWay()
+    const large = this.isLarge()
+    if (inQueue > (large ? 0 : 1)) return false
+    if (moving) {
+      this.render(this.pace.resolution(), true, large ? this.pace.mostTriangles() : Infinity)
+      return true
+    }
+    const still = time - this.lastMotion > kRestMilliseconds
+    const since = time - this.lastDrawn
+    if (!still) return false
+    const most = large ? this.rate * kStillMilliseconds : Infinity
+    const unfinished = this.applied !== 1 || this.drawn < Math.min(this.inSight, most) / 1.5
+    if (unfinished || (this.wanted && (inQueue === 0 && since > this.cost / kLightShare))) {
+      this.wanted = false
+      this.render(1, false, most)
+      return true
+    }
+    if (this.wanted || inQueue > 0 || this.antialias.isDone() || since < Math.max(kRestMilliseconds, 2 * this.cost)) return false
+    this.smooth()
     return true
   }
 
-  // Triangles come by size, the largest of each material first. False: as many as the last time.
-  private chooseTriangles(moving: boolean): boolean {
-    if (!this.isLarge() || !this.mesh) return false
-    const all = this.header!.triangles as number
-    const budget = this.rate * (moving ? kMovingMilliseconds : kStillMilliseconds)
-    const wanted = Math.min(all, Math.max(kFewestDrawn, budget))
-    // At rest more is drawn when it is worth it.
-    if (!moving && this.drawn >= Math.min(all, wanted / 1.5)) return false
-    if (moving && this.drawn <= wanted && wanted < 1.2 * this.drawn) return false
-    this.drawn = wanted
-    this.mesh.geometry.groups.forEach((g, i) => (g.count = 3 * Math.ceil((wanted / all) * this.header!.draws[i].count)))
-    return true
-  }
-
-  // While something moves, resolution is given up for pace; at rest the picture is whole again.
   private frame(time: number): void {
     requestAnimationFrame((next) => this.frame(next))
     const seconds = Math.min(0.1, (time - this.lastFrame) / 1000)
     this.lastFrame = time
     const moving = this.beforeDraw(seconds)
-    if (moving) {
-      if (time - this.lastMotion < 100) {
-        const slow = 1000 * seconds > 1.2 * kFrameMilliseconds
-        const fast = 1000 * seconds < 0.6 * kFrameMilliseconds
-        if (slow) this.resolution = Math.max(kCoarsest, this.resolution * 0.8)
-        else if (fast) this.resolution = Math.min(1, this.resolution * 1.05)
-      }
-      this.lastMotion = time
-    }
-    const atRest = time - this.lastMotion > kRestMilliseconds
-    const resolution = atRest ? 1 : Math.round(this.resolution * 8) / 8
-    if (!this.isDrawn()) return
-    const more = this.chooseTriangles(!atRest)
-    if (!this.wanted && !moving && this.applied === resolution && !more) return
-    this.wanted = false
-    this.applyResolution(resolution)
-    this.renderer.render(this.scene, this.camera)
-    if (this.isLarge()) {
-      const gl = this.renderer.getContext() as WebGL2RenderingContext
-      const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0)
-      gl.flush()
-      if (fence) this.drawing = { fence, since: performance.now() }
-    }
+    if (moving) this.lastMotion = time
+    if (!this.step(time, moving)) return
+    if (moving && this.wasMoving && time - this.lastDrawn < 1000) this.pace.learn(time - this.lastDrawn, this.isLarge())
+    if (moving && this.pace.isStruggling()) this.onStruggle()
+    this.wasMoving = moving
+    const gl = this.renderer.getContext() as WebGL2RenderingContext
+    const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0)
+    gl.flush()
+    if (sync) this.fences.push({ sync, since: performance.now(), triangles: this.drawn })
+    this.lastDrawn = time
     ++this.frames
     this.frameTimes.push(time)
     if (this.frameTimes.length > 240) this.frameTimes.splice(0, 120)

@@ -61,15 +61,18 @@ void fill_buried_sites(WorkMesh& mesh) {
       mesh.sites[SiteId(site)].light = {n.sum.direct / n.count, n.sum.indirect / n.count};
 }
 
-// Sheets by primitive instance, fronts before backs, then by input triangle.
+// Of the primitive that shows a sheet: by instance, fronts before backs.
+std::uint64_t rank(const Sheet& s, const Geometry& g) {
+  return 2 * std::uint64_t{g.instances[s.source].value} + (s.back ? 1 : 0);
+}
+
+// Sheets by primitive, then by input triangle.
 std::vector<SheetId> in_output_order(const WorkMesh& mesh, const Geometry& g) {
   std::vector<std::pair<std::uint64_t, SheetId>> ranked;
   ranked.reserve(mesh.sheets.size());
   for (std::size_t i = 0; i < mesh.sheets.size(); ++i) {
     const Sheet& s = mesh.sheets[SheetId(i)];
-    const std::uint64_t primitive =
-        2 * std::uint64_t{g.instances[s.source].value} + (s.back ? 1 : 0);
-    ranked.emplace_back(primitive << 32 | s.source.value, i);
+    ranked.emplace_back(rank(s, g) << 32 | s.source.value, i);
   }
   std::sort(ranked.begin(), ranked.end());
   std::vector<SheetId> order;
@@ -113,10 +116,17 @@ class PrimitiveFiller {
   IdVector<LitVertexId, std::uint32_t> owner_, index_;
 };
 
-std::vector<LitPrimitive> to_primitives(const WorkMesh& mesh, const Scene& scene,
-                                        const Geometry& g) {
-  std::vector<LitPrimitive> primitives;
+// Adds the primitives, and the simpler triangles of each.
+void add_primitives(LitMesh& result, const WorkMesh& mesh, std::vector<Sheet> simple,
+                    const Scene& scene, const Geometry& g) {
+  std::vector<LitPrimitive>& primitives = result.primitives;
   PrimitiveFiller filler(mesh);
+  const auto less = [&g](const Sheet& a, const Sheet& b) { return rank(a, g) < rank(b, g); };
+  std::stable_sort(simple.begin(), simple.end(), less);
+  const auto corners = [&filler](const Sheet& s) {
+    return std::array{filler.index_of(s.corners[0]), filler.index_of(s.corners[1]),
+                      filler.index_of(s.corners[2])};
+  };
   for (const SheetId id : in_output_order(mesh, g)) {
     const Sheet& s = mesh.sheets[id];
     const InstanceId instance = g.instances[s.source];
@@ -129,13 +139,16 @@ std::vector<LitPrimitive> to_primitives(const WorkMesh& mesh, const Scene& scene
       const Primitive& source = scene.meshes[what.mesh].primitives[what.primitive];
       filler.start(added, static_cast<std::uint32_t>(primitives.size()),
                    {!source.uvs[0].empty(), !source.uvs[1].empty()});
+      if (!simple.empty()) {
+        auto& kept = result.simple.emplace_back();
+        const auto [first, last] = std::equal_range(simple.begin(), simple.end(), s, less);
+        for (auto it = first; it != last; ++it) kept.push_back(corners(*it));
+      }
     }
     LitPrimitive& p = primitives.back();
-    p.triangles.push_back({filler.index_of(s.corners[0]), filler.index_of(s.corners[1]),
-                           filler.index_of(s.corners[2])});
+    p.triangles.push_back(corners(s));
     p.sources.push_back(s.source);
   }
-  return primitives;
 }
 
 LitMesh build_shown(const Scene& scene, const Geometry& g, WeldedPoints points,
@@ -150,9 +163,10 @@ LitMesh build_shown(const Scene& scene, const Geometry& g, WeldedPoints points,
                                    return read(places);
                                  });
   result.mean_irradiance = mean_irradiance(mesh, g);
-  refine_mesh(mesh, shown, read, options, max_component(result.mean_irradiance), progress, result);
+  std::vector<Sheet> simple = refine_mesh(mesh, shown, read, options,
+                                          max_component(result.mean_irradiance), progress, result);
   fill_buried_sites(mesh);
-  result.primitives = to_primitives(mesh, scene, g);
+  add_primitives(result, mesh, std::move(simple), scene, g);
   for (const LitPrimitive& p : result.primitives) {
     result.vertices += p.positions.size();
     result.triangles += p.triangles.size();

@@ -3,7 +3,9 @@
 // shown.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "halflight/base/progress.h"
@@ -21,10 +23,16 @@ struct LitMeshOptions {
   // this share of the light there (or of 10 % of the mean irradiance, where that is more).
   float tolerance = 0.05f;
   std::size_t max_vertices = 2'000'000;  // the input's own vertices are always kept
+  // Edge length, metres: a simpler mesh whose edges are no longer than needed for this is given as
+  // well, see LitMesh::simple. 0: none.
+  float simple = 0.f;
 };
 
 struct LitMesh {
   std::vector<LitPrimitive> primitives;
+  // Of each primitive, if asked for: triangles over the same vertices that cover the same surface,
+  // as they were when their edges first were short enough, before the light had them split.
+  std::vector<std::vector<std::array<std::uint32_t, 3>>> simple;
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   std::size_t readings = 0;        // places where the light was asked for

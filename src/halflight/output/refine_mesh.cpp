@@ -34,6 +34,7 @@ class Refiner {
   void subdivide();
   // The largest error among edges that should be split but were not; nothing when there are none.
   std::optional<float> error_left() const;
+  std::vector<Sheet> simple() const;
 
  private:
   float urgency(EdgeId e) const;
@@ -43,6 +44,7 @@ class Refiner {
   void undo_split();
   void replace(std::uint32_t i, std::vector<FineSheet>& parts);
   LitVertexId middle_vertex(const FineSheet& s, std::size_t k);
+  bool keep_simple(SheetId id);
 
   WorkMesh& mesh_;
   const LitMeshOptions& options_;
@@ -52,8 +54,18 @@ class Refiner {
   std::size_t first_new_sheet_ = 0;
   std::vector<EdgeId> pending_;  // should be split
   std::vector<EdgeId> split_now_;
-  std::vector<std::uint32_t> affected_;  // sheets with a side in split_now_
+  std::vector<std::uint32_t> affected_;        // sheets with a side in split_now_
+  std::vector<Sheet> simple_;                  // that were split all the same
+  IdVector<SheetId, std::uint8_t> in_simple_;  // lies in one of them
 };
+
+float longest_side(const WorkMesh& mesh, const Sheet& s) {
+  float longest = 0.f;
+  for (std::size_t k = 0; k < 3; ++k)
+    longest = std::max(
+        longest, glm::distance(mesh.position(s.corners[k]), mesh.position(s.corners[(k + 1) % 3])));
+  return longest;
+}
 
 void Refiner::add(FineSheet s) {
   const auto& v = mesh_.sheets[s.sheet].corners;
@@ -191,6 +203,7 @@ void Refiner::replace(std::uint32_t i, std::vector<FineSheet>& parts) {
       glm::dot(mesh_.position(split.corners[0]) - c, mesh_.position(split.corners[1]) - c) < 0.f;
   const bool smooth_indirect =
       whole.smooth_indirect || table_.is_indirect_smooth(whole, mean_irradiance_);
+  const bool in_simple = keep_simple(whole.sheet);
   bool is_first = true;
   for (const auto& corners : parts_of(split)) {
     FineSheet part;
@@ -199,6 +212,10 @@ void Refiner::replace(std::uint32_t i, std::vector<FineSheet>& parts) {
     part.smooth_indirect = smooth_indirect;
     part.sheet = is_first ? whole.sheet : mesh_.sheets.push_back({{}, sheet.source, sheet.back});
     mesh_.sheets[part.sheet].corners = corners;
+    if (in_simple) {
+      in_simple_.resize(mesh_.sheets.size(), 0);
+      in_simple_[part.sheet] = 1;
+    }
     parts.push_back(part);
     is_first = false;
   }
@@ -220,19 +237,31 @@ void Refiner::subdivide() {
   affected_.clear();
 }
 
-float longest_side(const WorkMesh& mesh, const Sheet& s) {
-  float longest = 0.f;
-  for (std::size_t k = 0; k < 3; ++k)
-    longest = std::max(
-        longest, glm::distance(mesh.position(s.corners[k]), mesh.position(s.corners[(k + 1) % 3])));
-  return longest;
+// Before a sheet is split: whether it lies in the simpler mesh, or in a triangle that does.
+bool Refiner::keep_simple(SheetId id) {
+  if (options_.simple <= 0.f) return false;
+  in_simple_.resize(mesh_.sheets.size(), 0);
+  if (in_simple_[id] == 0 && longest_side(mesh_, mesh_.sheets[id]) <= options_.simple) {
+    simple_.push_back(mesh_.sheets[id]);
+    in_simple_[id] = 1;
+  }
+  return in_simple_[id] != 0;
+}
+
+std::vector<Sheet> Refiner::simple() const {
+  std::vector<Sheet> all = simple_;
+  if (options_.simple <= 0.f) return all;
+  for (std::size_t i = 0; i < mesh_.sheets.size(); ++i)
+    if (i >= in_simple_.size() || in_simple_[SheetId(i)] == 0)
+      all.push_back(mesh_.sheets[SheetId(i)]);
+  return all;
 }
 
 }  // namespace
 
-void refine_mesh(WorkMesh& mesh, const IdVector<TriangleId, ShownSides>& shown,
-                 const LightReader& read, const LitMeshOptions& options, float mean_irradiance,
-                 const Progress& progress, LitMesh& result) {
+std::vector<Sheet> refine_mesh(WorkMesh& mesh, const IdVector<TriangleId, ShownSides>& shown,
+                               const LightReader& read, const LitMeshOptions& options,
+                               float mean_irradiance, const Progress& progress, LitMesh& result) {
   Refiner refiner(mesh, options, mean_irradiance);
   for (std::size_t i = 0; i < mesh.sheets.size(); ++i) {
     const Sheet& sheet = mesh.sheets[SheetId(i)];
@@ -252,6 +281,7 @@ void refine_mesh(WorkMesh& mesh, const IdVector<TriangleId, ShownSides>& shown,
   const auto error_left = refiner.error_left();
   result.limited = error_left.has_value();
   result.largest_error_left = error_left.value_or(0.f);
+  return refiner.simple();
 }
 
 }  // namespace halflight

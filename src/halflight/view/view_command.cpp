@@ -133,6 +133,7 @@ Result<ViewCommand> parse_view_command(std::string_view text) {
   CommandReader read(*object);
   ViewCommand command;
   command.paused = read.flag("paused");
+  command.give_way = read.flag("giveWay").value_or(false);
   command.step = read.flag("step").value_or(false);
   command.all_important = read.flag("allImportant").value_or(false);
   command.shown = read.flag("shown");

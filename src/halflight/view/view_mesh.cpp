@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <type_traits>
+#include <utility>
 
 #include "halflight/base/parallel.h"
 #include "halflight/view/packet.h"
@@ -14,6 +13,8 @@ namespace {
 using nlohmann::json;
 
 constexpr float kEdgePerFeature = 2.f;  // length of edges in feature sizes
+constexpr float kSimpleEdgePerFeature = 8.f;
+constexpr float kSimplerIsWorthIt = 0.7f;  // of the triangles
 constexpr std::size_t kMostNodes = 20'000;
 // Of the mean irradiance: backs that light only reaches through a gap are not worth vertices.
 constexpr float kUnlit = 5e-3f;
@@ -89,28 +90,18 @@ json camera_json(const PlacedCamera& c) {
           {"halfHeight", c.half_height}};
 }
 
-// Within a draw the largest triangles first: who cannot draw all in time leaves out the smallest.
-void order_by_size(ViewMesh& mesh) {
-  std::vector<float> areas(mesh.triangles.size());
-  parallel_for(areas.size(), 4096, [&](std::size_t i) {
-    const auto& t = mesh.triangles[i];
-    areas[i] = glm::length(glm::cross(mesh.positions[t[1]] - mesh.positions[t[0]],
-                                      mesh.positions[t[2]] - mesh.positions[t[0]]));
-  });
-  std::vector<std::uint32_t> order(areas.size());
-  std::iota(order.begin(), order.end(), 0u);
-  for (const ViewMesh::Draw& d : mesh.draws)
-    std::stable_sort(order.begin() + d.first, order.begin() + d.first + d.count,
-                     [&](std::uint32_t a, std::uint32_t b) { return areas[a] > areas[b]; });
-  const auto sorted = [&](const auto& items) {
-    std::remove_cvref_t<decltype(items)> result;
-    result.reserve(items.size());
-    for (const std::uint32_t i : order) result.push_back(items[i]);
-    return result;
-  };
-  mesh.triangles = sorted(mesh.triangles);
-  mesh.sources = sorted(mesh.sources);
-  mesh.back = sorted(mesh.back);
+template <class T>
+void arrange(std::vector<T>& items, const std::vector<std::uint32_t>& order) {
+  std::vector<T> arranged(items.size());
+  parallel_for(items.size(), 4096, [&](std::size_t i) { arranged[i] = items[order[i]]; });
+  items = std::move(arranged);
+}
+
+bool is_simple_worth_it(const LitMesh& lit) {
+  std::size_t simple = 0;
+  for (const auto& triangles : lit.simple) simple += triangles.size();
+  return simple > 0 &&
+         static_cast<float>(simple) < kSimplerIsWorthIt * static_cast<float>(lit.triangles);
 }
 
 // Nodes that place something: what can be moved and switched.
@@ -149,6 +140,10 @@ IdVector<TriangleId, ShownSides> sides_worth_showing(const SolverState& state) {
   return shown;
 }
 
+float simple_edge(const SolverState& state) {
+  return kSimpleEdgePerFeature * state.options.feature_size;
+}
+
 LitMesh cut_evenly(const SolverState& state, std::size_t most_vertices) {
   const Geometry& g = state.world->geometry;
   const auto shown = live_sides_of(state);
@@ -164,6 +159,7 @@ LitMesh cut_evenly(const SolverState& state, std::size_t most_vertices) {
   options.coarse = std::max(kEdgePerFeature * options.feature_size, fewest);
   options.finest = options.coarse;
   options.max_vertices = 2 * most_vertices;
+  options.simple = simple_edge(state);
   const LightReader evenly = [](std::span<const ReadingPoint> points) {
     return std::vector<Reading>(points.size(), Reading{Rgb(1.f), Rgb(0.f)});
   };
@@ -216,6 +212,8 @@ ViewMesh make_view_mesh(const World& world, const LitMesh& lit) {
   std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
     return std::pair(a.material, a.emits) < std::pair(b.material, b.emits);
   });
+  const bool with_simple = is_simple_worth_it(lit);
+  std::vector<std::uint32_t> simple_sizes;  // of draws
   for (const Part& part : parts) {
     const LitPrimitive& p = lit.primitives[part.primitive];
     const auto first = static_cast<std::uint32_t>(mesh.triangles.size());
@@ -230,8 +228,26 @@ ViewMesh make_view_mesh(const World& world, const LitMesh& lit) {
       mesh.back.push_back(p.back ? 1 : 0);
     }
     mesh.draws.back().count += static_cast<std::uint32_t>(p.triangles.size());
+    simple_sizes.resize(mesh.draws.size(), 0);
+    if (!with_simple) continue;
+    for (const ViewTriangle& t : lit.simple[part.primitive])
+      mesh.simple.push_back(
+          {part.first_vertex + t[0], part.first_vertex + t[1], part.first_vertex + t[2]});
+    simple_sizes.back() += static_cast<std::uint32_t>(lit.simple[part.primitive].size());
   }
-  order_by_size(mesh);
+  std::vector<std::uint32_t> sizes;
+  for (const ViewMesh::Draw& d : mesh.draws) sizes.push_back(d.count);
+  auto [order, chunks] = arrange_in_chunks(mesh.positions, mesh.triangles, sizes);
+  mesh.chunks = std::move(chunks);
+  arrange(mesh.triangles, order);
+  arrange(mesh.sources, order);
+  arrange(mesh.back, order);
+  if (with_simple) {
+    auto [simple_order, simple_chunks] =
+        arrange_in_chunks(mesh.positions, mesh.simple, simple_sizes);
+    mesh.simple_chunks = std::move(simple_chunks);
+    arrange(mesh.simple, simple_order);
+  }
   return mesh;
 }
 
@@ -271,7 +287,12 @@ std::string topology_packet(const ViewMesh& mesh, const World& world, const Plac
   for (const PlacedCamera& c : world.geometry.cameras) h["cameras"].push_back(camera_json(c));
   h["firstView"] = camera_json(first);
   packet.add<Vec3>("positions", "f32", mesh.positions);
-  packet.add<std::array<std::uint32_t, 3>>("indices", "u32", mesh.triangles);
+  packet.add<ViewTriangle>("indices", "u32", mesh.triangles);
+  packet.add<ViewChunk>("chunks", "u32", mesh.chunks);
+  if (!mesh.simple.empty()) {
+    packet.add<ViewTriangle>("simpleIndices", "u32", mesh.simple);
+    packet.add<ViewChunk>("simpleChunks", "u32", mesh.simple_chunks);
+  }
   if (!mesh.uvs.empty()) packet.add<Vec2>("uvs", "f32", mesh.uvs);
   return packet.bytes();
 }

@@ -2,13 +2,13 @@
 // that carries it to the page once.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "halflight/output/lit_mesh.h"
 #include "halflight/solve/solver.h"
+#include "halflight/view/view_chunks.h"
 
 namespace halflight {
 
@@ -17,9 +17,9 @@ struct ViewMesh {
   bool sharp = false;       // follows the light; else cut evenly, before there was any
   std::vector<Vec3> positions;
   std::vector<Vec2> uvs;  // as the base colour's texture wants them; empty: no texture
-  std::vector<std::array<std::uint32_t, 3>> triangles;  // grouped by `draws`
-  std::vector<TriangleId> sources;                      // the scene's triangle each lies in
-  std::vector<std::uint8_t> back;                       // of each triangle: shows the back side
+  std::vector<ViewTriangle> triangles;  // grouped by `draws`, in the order of `chunks`
+  std::vector<TriangleId> sources;      // the scene's triangle each lies in
+  std::vector<std::uint8_t> back;       // of each triangle: shows the back side
 
   struct Draw {
     MaterialId material;
@@ -27,11 +27,20 @@ struct ViewMesh {
     std::uint32_t first = 0, count = 0;  // triangles
   };
   std::vector<Draw> draws;
+  std::vector<ViewChunk> chunks;
+
+  // Fewer triangles over the same vertices, for pictures that have to be quick; none where that
+  // would save too little.
+  std::vector<ViewTriangle> simple;
+  std::vector<ViewChunk> simple_chunks;
 };
 
 // Cuts the sides that can see light into triangles whose size suits the feature size, or larger
 // ones where that would be too many vertices.
 LitMesh cut_evenly(const SolverState& state, std::size_t most_vertices);
+
+// Edges of the simpler mesh that is drawn while the eye moves, metres.
+float simple_edge(const SolverState& state);
 
 // Moves what belongs to a node or to one below it.
 void translate(LitMesh& mesh, const World& world, NodeId node, const Vec3& offset);

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "halflight/output/read_light.h"
 #include "halflight/solve/importance.h"
 #include "halflight/solve/mix.h"
 #include "halflight/view/loopback_server.h"
@@ -18,8 +17,8 @@
 namespace halflight {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using nlohmann::json;
+using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostWaiting = 64;  // in the inbox
 // Iterations: the first is as short as can be, later ones may be longer, as long as a click need
@@ -40,6 +39,11 @@ constexpr float kSharpTolerance = 0.1f;
 constexpr std::size_t kMostGroupsApart = 8;
 constexpr double kQuietBeforeSharpening = 0.3;  // seconds without a change
 constexpr std::size_t kMostHistory = 4000;
+// While the page asks for the processor, work goes on for this share of the time, in small
+// portions.
+constexpr auto kGiveWay = std::chrono::milliseconds(400);
+constexpr int kNapsPerWork = 6;
+constexpr std::size_t kPortion = 1024;  // readings
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -154,9 +158,20 @@ Result<void> ViewSession::check(const ViewCommand& command) const {
 
 Result<void> ViewSession::command(ViewCommand command) {
   if (auto ok = check(command); !ok) return ok;
+  if (command.give_way) give_way_until_ = (Clock::now() + kGiveWay).time_since_epoch().count();
   // What begins anew has no use for the iteration that runs.
   const bool hurry = command.offset || command.shown || command.feature_size || command.visibility;
   return post({[this, command = std::move(command)] { apply(command); }, true}, hurry);
+}
+
+// Leaves the processor alone after work that began at `start`, for as long as the page asks for it.
+void ViewSession::nap_after(Clock::time_point start, const std::function<bool()>& wake) {
+  const Clock::time_point now = Clock::now();
+  const Clock::time_point until{Clock::duration(give_way_until_.load())};
+  if (now >= until) return;
+  std::unique_lock lock(mutex_);
+  changed_.wait_until(lock, std::min(until, now + kNapsPerWork * (now - start)),
+                      [&] { return stop_ || wake(); });
 }
 
 Result<std::string> ViewSession::ask(Question question, double seconds) {
@@ -316,6 +331,7 @@ void ViewSession::iterate() {
   if (frames_since_restart_ < 2 || idle_next || waited > interval) publish_light();
   if (idle_next && !state.done()) set_phase(paused_ ? Phase::paused : Phase::limited);
   publish_status();
+  nap_after(start, [this] { return !inbox_.empty(); });
 }
 
 // The solution is there: lamps are taken apart, so that dimming them takes no solve.
@@ -553,6 +569,22 @@ void ViewSession::publish_status() {
   changed_.notify_all();
 }
 
+std::vector<Reading> ViewSession::read_in_portions(const SolutionReader& reader,
+                                                   std::span<const ReadingPoint> points,
+                                                   const Progress& progress) {
+  std::vector<Reading> readings;
+  readings.reserve(points.size());
+  while (!points.empty()) {
+    const auto start = Clock::now();
+    const auto portion = points.first(std::min(kPortion, points.size()));
+    const std::vector<Reading> part = reader(portion, progress);
+    readings.insert(readings.end(), part.begin(), part.end());
+    points = points.subspan(portion.size());
+    nap_after(start, [&progress] { return progress.cancelled(); });
+  }
+  return readings;
+}
+
 // The finished solution, read exactly at the vertices of a mesh that follows the light, and how far
 // it is from the truth.
 void ViewSession::sharpen() {
@@ -573,11 +605,14 @@ void ViewSession::sharpen() {
     options.finest = finest_mesh_edge(state);
     options.coarse = 8.f * options.feature_size;
     options.tolerance = kSharpTolerance;
+    options.simple = simple_edge(state);
     options.max_vertices = std::max(kSharpVertices, 2 * mesh_.positions.size());
     LitMesh mesh = build_lit_mesh(
         world.scene, world.geometry, sides_worth_showing(state),
-        [&](std::span<const ReadingPoint> points) { return reader(points, progress); }, options,
-        progress);
+        [&](std::span<const ReadingPoint> points) {
+          return read_in_portions(reader, points, progress);
+        },
+        options, progress);
     if (!progress.cancelled()) result.mesh = std::move(mesh);
     if (!progress.cancelled()) result.error = ErrorProbes(state).measure(state);
     {
@@ -591,6 +626,7 @@ void ViewSession::sharpen() {
 void ViewSession::stop_sharpening() {
   if (!sharpening_.joinable()) return;
   sharpening_progress_->cancel();
+  changed_.notify_all();
   sharpening_.join();
   const std::lock_guard lock(mutex_);
   sharpened_ready_ = false;

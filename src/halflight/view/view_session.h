@@ -6,6 +6,8 @@
 //   any other thread   status, topology and light frames: shared, immutable, swapped whole
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -19,6 +21,7 @@
 #include "halflight/base/progress.h"
 #include "halflight/base/result.h"
 #include "halflight/output/estimated_error.h"
+#include "halflight/output/read_light.h"
 #include "halflight/view/draft_light.h"
 #include "halflight/view/light_frames.h"
 #include "halflight/view/live_scene.h"
@@ -68,6 +71,7 @@ class ViewSession {
   Result<std::string> ask(Question question, double seconds);
 
  private:
+  using Clock = std::chrono::steady_clock;
   enum class Phase { loading, building, solving, paused, limited, sharpening, done, failed };
   struct Task {
     std::function<void()> run;
@@ -80,6 +84,7 @@ class ViewSession {
   static const char* name_of(Phase phase);
 
   Result<void> post(Task task, bool hurry);
+  void nap_after(Clock::time_point start, const std::function<bool()>& wake);
   void run();
   bool start();
   void work();
@@ -97,6 +102,9 @@ class ViewSession {
   void light_changed();
 
   void sharpen();
+  std::vector<Reading> read_in_portions(const SolutionReader& reader,
+                                        std::span<const ReadingPoint> points,
+                                        const Progress& progress);
   void stop_sharpening();
   void take_sharpened();
 
@@ -116,13 +124,15 @@ class ViewSession {
   bool paused_ = false, step_ = false, finished_ = false, sharpened_ = false;
   std::size_t frames_since_restart_ = 0;
   double solving_seconds_ = 0.0, publishing_seconds_ = 0.0;
-  std::chrono::steady_clock::time_point last_publication_, last_change_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  Clock::time_point last_publication_, last_change_;
+  Clock::time_point begin_ = Clock::now();
   double first_light_seconds_ = 0.0;
 
   std::thread sharpening_;
   std::unique_ptr<Progress> sharpening_progress_;
   std::unique_ptr<Sharpened> sharpened_result_;
+
+  std::atomic<Clock::rep> give_way_until_{0};  // ticks of the clock
 
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
