@@ -369,6 +369,45 @@ TEST(LiveView, ShowsWhatTheSolverWorksWith) {
   EXPECT_GT(std::count(classes.begin(), classes.end(), 0u), 100);
 }
 
+TEST(LiveView, LeavesTheProcessorToThePageThatAsksForIt) {
+  Live live(room(), 0.02f);
+  const auto share = [&](bool giving_way) {
+    const json before = live.status();
+    for (int i = 0; i < 10; ++i) {
+      if (giving_way) live.command(R"({"giveWay": true})");
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    const json after = live.status();
+    return (after["solvingSeconds"].get<double>() - before["solvingSeconds"].get<double>()) /
+           (after["wallSeconds"].get<double>() - before["wallSeconds"].get<double>());
+  };
+  live.command(R"({"giveWay": true})");
+  const double polite = share(true);
+  EXPECT_LT(polite, 0.6);
+  ASSERT_NE(live.status()["phase"], "done") << "the scene is too small for this";
+  const double eager = share(false);
+  if (live.status()["phase"] == "solving") {
+    EXPECT_GT(eager, 1.3 * polite);
+  }
+}
+
+TEST(LiveView, SolvesOnWhileSomethingIsTakenHome) {
+  Live live(room(), 0.02f);
+  ASSERT_TRUE(live.wait([](const json& s) { return s["version"].get<int>() > 0; }));
+  const auto answer = live.session.ask_copy(
+      [&](const SolutionCopy& copy) -> Result<std::string> {
+        const std::size_t iterations = copy.state.history.size();
+        const bool goes_on = live.wait(
+            [&](const json& s) { return s["iterations"].get<std::size_t>() > iterations + 2; },
+            20.0);
+        EXPECT_EQ(copy.state.history.size(), iterations) << "the copy stays as it is";
+        return std::string(goes_on ? "goes on" : "stands");
+      },
+      20.0);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(*answer, "goes on");
+}
+
 TEST(LiveView, TellsWhyThereIsNothingToSee) {
   ViewSession broken([]() -> Result<Scene> { return input_error("bad", "room.glb", "mend it"); },
                      {});

@@ -108,16 +108,13 @@ export async function drawn(page) {
 }
 
 export async function picture(page, name, clip = undefined) {
-  await page.waitForTimeout(350) // until the picture is whole again after a movement
-  await drawn(page)
+  await page.evaluate(() => window.halflight.stage.finish())
   return PNG.sync.read(await page.screenshot({ path: join(shots, `${name}.png`), clip }))
 }
 
-// Pixels of the canvas alone, at its own resolution.
+// Pixels of the canvas alone, all of the picture at its own resolution.
 export async function canvas(page) {
-  await page.waitForTimeout(350)
-  await drawn(page)
-  const url = await page.evaluate(() => window.halflight.stage.canvas.toDataURL())
+  const url = await page.evaluate(() => (window.halflight.stage.finish(), window.halflight.stage.canvas.toDataURL()))
   return PNG.sync.read(Buffer.from(url.split(',')[1], 'base64'))
 }
 
@@ -146,7 +143,7 @@ export function control(page, label) {
   return page.locator('.lil-controller', { has: page.locator('.lil-name', { hasText: new RegExp(`^${label.replace(/[()/.]/g, '\\$&')}$`) }) })
 }
 export async function setNumber(page, label, value) {
-  const input = control(page, label).locator('input').last()
+  const input = control(page, label).locator('input:not([type=color])').last()
   await input.fill(String(value))
   await input.press('Enter')
   await input.blur()

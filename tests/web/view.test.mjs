@@ -240,7 +240,17 @@ test('lamps dim, objects move and vanish, and the light follows', async () => {
   await setNumber(page, 'lamp', 0.5)
   await until(page, 'half the light', (b) => window.halflight.status().meanIrradiance < 0.6 * b, 10, bright)
   assert.ok(Math.abs((await mean()) / bright - 0.5) < 0.03)
+  // Recoloured: what the filter holds back is missing, the rest stays.
+  const tint = control(page, 'lamp').locator('input[type=color]')
+  await tint.fill('#ff0000')
+  await until(page, 'red light', () => window.halflight.status().groups[0].factor.every((f, k) => Math.abs(f - (k ? 0 : 0.5)) < 0.01), 10)
+  await settled(page)
+  const red = await picture(page, 'red-lamp').then(() => canvas(page))
+  const [r, g] = [0, 1].map((k) => red.data.filter((_, i) => i % 4 === k).reduce((sum, v) => sum + v, 0))
+  assert.ok(r > 2 * g, `a red lamp shows ${r} of red and ${g} of green`)
+  await tint.fill('#ffffff')
   await setNumber(page, 'lamp', 1)
+  await until(page, 'all the light', () => window.halflight.status().groups[0].factor.every((f) => f === 1), 10)
   await settled(page)
 
   const before = await canvas(page)

@@ -25,3 +25,15 @@ vec3 viridis(float t) {
     .map((c, i, all) => (i + 1 < all.length ? `(${c} + x * ` : c))
     .join('')}${')'.repeat(kFit.length - 1)}, 0., 1.);
 }`
+
+// Linear channels from an sRGB colour as pages write it, and back.
+export function fromHex(hex: string): number[] {
+  return [1, 3, 5].map((at) => {
+    const c = parseInt(hex.slice(at, at + 2), 16) / 255
+    return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4
+  })
+}
+export function toHex(linear: number[]): string {
+  const byte = (x: number) => Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055))
+  return `#${linear.map((x) => byte(Math.min(1, Math.max(0, x))).toString(16).padStart(2, '0')).join('')}`
+}

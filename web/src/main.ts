@@ -181,14 +181,15 @@ function showStatus(): void {
   const bar = element<HTMLProgressElement>('share')
   const text = element('status-text')
   if (lost) {
-    bar.removeAttribute('value')
+    bar.hidden = true
     text.textContent = 'Connection lost. Waiting for halflight view to come back.'
     return
   }
   if (!status) return
+  // Nothing moves by itself: where a processor draws, an animation takes all of its time.
   const done = share(status)
-  if (done === null) bar.removeAttribute('value')
-  else bar.value = done
+  bar.hidden = done === null
+  bar.value = done ?? 0
   const parts = [kPhases[status.phase]]
   if (status.phase === 'solving' && status.stage) parts[0] += `: ${status.stage}`
   if (status.elements) parts.push(`${status.elements.toLocaleString('en')} elements`)
@@ -198,15 +199,28 @@ function showStatus(): void {
   text.textContent = parts.join(' · ')
 }
 
+// Words and controls follow the status a few times a second: each change has the page drawn anew.
+const kTextMilliseconds = 250
+let textTimer = 0
+let lastText = 0
+function soon(): void {
+  if (textTimer) return
+  textTimer = window.setTimeout(() => {
+    textTimer = 0
+    lastText = performance.now()
+    showSentence()
+    showStatus()
+    if (status) panel.update(status)
+  }, Math.max(0, lastText + kTextMilliseconds - performance.now()))
+}
+
 let lastLayerRecords = 0
 connection.onStatus = (next) => {
   const restarted = status && status.session !== next.session
   lost = false
   status = next
   if (restarted) stage.epoch = 0
-  showSentence()
-  showStatus()
-  panel.update(next)
+  soon()
   void charts.follow(next)
   void pull()
   if (layers.layer === 'clusters' || layers.layer === 'none') return
@@ -235,7 +249,12 @@ async function probeAt(x: number, y: number, exact: boolean): Promise<void> {
     wanted = null
     const ray = stage.ray(at.x, at.y)
     try {
-      probed = await connection.probe(ray.origin, ray.direction, at.exact)
+      const answer = await connection.probe(ray.origin, ray.direction, at.exact)
+      if (answer.busy) {
+        if (at.exact) toast('The solver is busy. Click again in a moment.')
+        continue
+      }
+      probed = answer
       pinned = at.exact
       showProbe(element('probe'), probed, picture.unit, pinned)
       if (at.exact && probed.hit) {

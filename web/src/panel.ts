@@ -4,6 +4,7 @@ import type { Status } from './connection'
 import { kLayers, type Layers } from './layers'
 import type { Mode, Motion } from './motion'
 import type { Mover } from './mover'
+import { fromHex, toHex } from './colours'
 import { kUnits } from './probe'
 
 export interface Panel {
@@ -59,8 +60,37 @@ export function makePanel(container: HTMLElement, parts: Parts): Panel {
   solve.add(wishes, 'links', 0, undefined, 1).name('link limit (0: none)').onFinishChange((v: number) => actions.act({ links: Math.max(0, Math.round(v)) }))
 
   const lights = gui.addFolder('Lights')
+  // Of each group: how bright its brightest channel is, and its colour then.
   const factors: Record<string, number> = {}
+  const tints = new Map<string, HTMLInputElement>()
   let lightNames = ''
+  const factor = (name: string) => {
+    const tint = fromHex(tints.get(name)?.value ?? '#ffffff')
+    const most = Math.max(...tint)
+    return tint.map((c) => factors[name] * (most > 0 ? c / most : 1))
+  }
+  const addLight = (name: string) => {
+    const dimmer = lights.add(factors, name, 0, 2, 0.01).onChange(() => void dim())
+    const tint = document.createElement('input')
+    tint.type = 'color'
+    tint.value = '#ffffff'
+    tint.title = 'Colour that the lamp is multiplied by; how bright it is, the dimmer says'
+    tint.setAttribute('aria-label', `colour of ${name}`)
+    tint.oninput = () => void dim()
+    dimmer.domElement.querySelector('.lil-widget')!.append(tint)
+    tints.set(name, tint)
+  }
+  const showLight = (group: NonNullable<Status['groups']>[number]) => {
+    const controller = lights.controllers.find((c) => c.property === group.name)
+    const tint = tints.get(group.name)
+    const value = Math.max(...group.factor)
+    if (!controller || !tint || isEdited(controller)) return
+    if (Math.abs(factors[group.name] - value) > 1e-4) {
+      factors[group.name] = value
+      controller.updateDisplay()
+    }
+    if (value > 0) tint.value = toHex(group.factor.map((c) => c / value))
+  }
   // The last factors always arrive, one request at a time.
   let dimming = false
   let undimmed = false
@@ -70,7 +100,7 @@ export function makePanel(container: HTMLElement, parts: Parts): Panel {
     dimming = true
     while (undimmed) {
       undimmed = false
-      await actions.act({ groups: { ...factors } })
+      await actions.act({ groups: Object.fromEntries(Object.keys(factors).map((name) => [name, factor(name)])) })
       await new Promise((resolve) => setTimeout(resolve, 30))
     }
     dimming = false
@@ -150,18 +180,14 @@ export function makePanel(container: HTMLElement, parts: Parts): Panel {
       if (names !== lightNames) {
         lightNames = names
         lights.children.slice().forEach((c) => c.destroy())
+        tints.clear()
+        for (const name of Object.keys(factors)) delete factors[name]
         for (const g of status.groups ?? []) {
           factors[g.name] = Math.max(...g.factor)
-          lights.add(factors, g.name, 0, 2, 0.01).onChange(() => void dim())
+          addLight(g.name)
         }
-      } else if (!dimming)
-        for (const g of status.groups ?? []) {
-          const controller = lights.controllers.find((c) => c.property === g.name)
-          const value = Math.max(...g.factor)
-          if (!controller || isEdited(controller) || Math.abs(factors[g.name] - value) < 1e-4) continue
-          factors[g.name] = value
-          controller.updateDisplay()
-        }
+      }
+      if (!dimming) status.groups?.forEach(showLight)
       lights.show((status.groups ?? []).length > 0)
       if (JSON.stringify(edits) !== JSON.stringify(status.edits ?? [])) {
         edits = status.edits ?? []

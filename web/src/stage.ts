@@ -98,6 +98,8 @@ export class Stage {
     this.mesh = new THREE.Mesh(geometry, materials[0])
     this.mesh.frustumCulled = false
     this.scene.add(this.mesh)
+    // The first picture is a quick one.
+    if (!this.header) this.lastMotion = this.lastFrame
     this.header = h
     this.epoch = h.epoch
     const sky = h.sky as number[]
@@ -285,7 +287,12 @@ export class Stage {
     }
     const still = time - this.lastMotion > kRestMilliseconds
     const since = time - this.lastDrawn
-    if (!still) return false
+    if (!still) {
+      if (!this.wanted) return false
+      this.wanted = false
+      this.render(this.pace.resolution(), true, large ? this.pace.mostTriangles() : Infinity)
+      return true
+    }
     const most = large ? this.rate * kStillMilliseconds : Infinity
     const unfinished = this.applied !== 1 || this.drawn < Math.min(this.inSight, most) / 1.5
     if (unfinished || (this.wanted && (inQueue === 0 && since > this.cost / kLightShare))) {

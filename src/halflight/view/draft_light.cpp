@@ -14,20 +14,7 @@ constexpr double kLeastShown = 0.1;  // of the mean luminance
 
 DraftLight::DraftLight(const World& world, const ViewMesh& mesh) : mesh_(&mesh) {
   const std::size_t n = mesh.triangles.size();
-  middles_.resize(n);
-  areas_.resize(n);
-  reflectance_.resize(n);
-  emits_.resize(n);
-  cells_.resize(n);
-  parallel_for(n, kGrain, [&](std::size_t i) {
-    const auto& t = mesh.triangles[i];
-    const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
-    middles_[i] = (a + b + c) / 3.f;
-    areas_[i] = 0.5f * glm::length(glm::cross(b - a, c - a));
-    const Material& m = world.scene.materials[world.geometry.materials[mesh.sources[i]]];
-    reflectance_[i] = luminance(m.reflectance);
-    emits_[i] = m.emits() ? 1 : 0;
-  });
+  restart(world);
   first_of_vertex_.assign(mesh.positions.size() + 1, 0);
   for (const auto& t : mesh.triangles)
     for (const std::uint32_t v : t) ++first_of_vertex_[v + 1];
@@ -37,6 +24,24 @@ DraftLight::DraftLight(const World& world, const ViewMesh& mesh) : mesh_(&mesh) 
   std::vector<std::uint32_t> next(first_of_vertex_.begin(), first_of_vertex_.end() - 1);
   for (std::uint32_t i = 0; i < n; ++i)
     for (const std::uint32_t v : mesh.triangles[i]) triangles_of_vertex_[next[v]++] = i;
+}
+
+void DraftLight::restart(const World& world) {
+  const std::size_t n = mesh_->triangles.size();
+  middles_.resize(n);
+  areas_.resize(n);
+  reflectance_.resize(n);
+  emits_.resize(n);
+  cells_.assign(n, ElementId());
+  parallel_for(n, kGrain, [&](std::size_t i) {
+    const ViewTriangle& t = mesh_->triangles[i];
+    const Vec3 a = mesh_->positions[t[0]], b = mesh_->positions[t[1]], c = mesh_->positions[t[2]];
+    middles_[i] = (a + b + c) / 3.f;
+    areas_[i] = 0.5f * glm::length(glm::cross(b - a, c - a));
+    const Material& m = world.scene.materials[world.geometry.materials[mesh_->sources[i]]];
+    reflectance_[i] = luminance(m.reflectance);
+    emits_[i] = m.emits() ? 1 : 0;
+  });
 }
 
 void DraftLight::find_cells(const SolverState& state) {

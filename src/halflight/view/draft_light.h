@@ -14,6 +14,9 @@ class DraftLight {
  public:
   DraftLight(const World& world, const ViewMesh& mesh);
 
+  // For another state, or after vertices have moved: nothing that was read holds any more.
+  void restart(const World& world);
+
   struct Frame {
     std::vector<Rgb> irradiance;  // of vertices
     float exposure = 1.f;         // brings the log-average of shown radiance to middle grey

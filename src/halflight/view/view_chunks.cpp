@@ -125,4 +125,14 @@ ArrangedTriangles arrange_in_chunks(std::span<const Vec3> positions,
   return arranged;
 }
 
+void refit(std::span<ViewChunk> chunks, std::span<const Vec3> positions,
+           std::span<const ViewTriangle> triangles) {
+  parallel_for(chunks.size(), 1, [&](std::size_t c) {
+    ViewChunk& chunk = chunks[c];
+    chunk.box = {};
+    for (const ViewTriangle& t : triangles.subspan(chunk.first, chunk.count))
+      for (const std::uint32_t v : t) chunk.box.extend(positions[v]);
+  });
+}
+
 }  // namespace halflight

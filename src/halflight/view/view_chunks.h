@@ -31,4 +31,8 @@ ArrangedTriangles arrange_in_chunks(std::span<const Vec3> positions,
                                     std::span<const ViewTriangle> triangles,
                                     std::span<const std::uint32_t> sizes);
 
+// After vertices have moved as a whole with their triangles.
+void refit(std::span<ViewChunk> chunks, std::span<const Vec3> positions,
+           std::span<const ViewTriangle> triangles);
+
 }  // namespace halflight

@@ -68,20 +68,20 @@ LitMesh sharp_mesh(const SolverState& state) {
 
 }  // namespace
 
-Result<std::string> lit_glb(LiveSolution& live) {
-  const SolverState& state = *live.scene.state;
+Result<std::string> lit_glb(const SolutionCopy& solution) {
+  const SolverState& state = solution.state;
   const World& world = *state.world;
   std::optional<LitMesh> made;
-  if (!live.sharp) made = sharp_mesh(state);
-  const LitMesh& mesh = live.sharp ? *live.sharp : *made;
+  if (!solution.sharp) made = sharp_mesh(state);
+  const LitMesh& mesh = solution.sharp ? *solution.sharp : *made;
   const float exposure = automatic_exposure(world.scene, world.geometry, mesh.primitives);
   return bytes_of("lit.glb", [&](const std::filesystem::path& file) {
     return write_lit_glb(file, world.scene, world.geometry, mesh.primitives, exposure);
   });
 }
 
-Result<std::string> hdr_picture(LiveSolution& live, const ViewOfInterest& view) {
-  const SolverState& state = *live.scene.state;
+Result<std::string> hdr_picture(const SolutionCopy& solution, const ViewOfInterest& view) {
+  const SolverState& state = solution.state;
   const int width = std::min(view.width, kLargestPicture);
   const int height = std::min(view.height, kLargestPicture);
   const Image image =

@@ -8,10 +8,10 @@
 namespace halflight {
 
 // As `halflight solve -o` writes it.
-Result<std::string> lit_glb(LiveSolution& live);
+Result<std::string> lit_glb(const SolutionCopy& solution);
 
 // OpenEXR, as `halflight render` writes it. At most kLargestPicture pixels on a side.
 inline constexpr int kLargestPicture = 2048;
-Result<std::string> hdr_picture(LiveSolution& live, const ViewOfInterest& view);
+Result<std::string> hdr_picture(const SolutionCopy& solution, const ViewOfInterest& view);
 
 }  // namespace halflight

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "halflight/base/parallel.h"
@@ -33,6 +34,17 @@ IdVector<TriangleId, ShownSides> live_sides_of(const SolverState& state) {
     shown[t].back = state.tree.side_root(side_of(s, true)).valid();
   }
   return shown;
+}
+
+void keep_largest(IdVector<TriangleId, ShownSides>& shown, const Geometry& g, std::size_t most) {
+  std::vector<std::uint32_t> order(g.triangles.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::vector<float> areas(order.size());
+  parallel_for(areas.size(), 4096, [&](std::size_t i) { areas[i] = g.area(TriangleId(i)); });
+  const auto rest = order.begin() + static_cast<std::ptrdiff_t>(most);
+  std::nth_element(order.begin(), rest, order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return areas[a] > areas[b]; });
+  for (auto i = rest; i != order.end(); ++i) shown[TriangleId(*i)] = {false, false};
 }
 
 // Mean irradiance of every side's cells, brightest channel.
@@ -144,9 +156,11 @@ float simple_edge(const SolverState& state) {
   return kSimpleEdgePerFeature * state.options.feature_size;
 }
 
-LitMesh cut_evenly(const SolverState& state, std::size_t most_vertices) {
+LitMesh cut_evenly(const SolverState& state, std::size_t most_vertices,
+                   std::size_t most_triangles) {
   const Geometry& g = state.world->geometry;
-  const auto shown = live_sides_of(state);
+  auto shown = live_sides_of(state);
+  if (g.triangles.size() > most_triangles) keep_largest(shown, g, most_triangles);
   double area = 0.0;
   for (std::size_t i = 0; i < shown.size(); ++i)
     area += static_cast<double>(g.area(TriangleId(i))) *
@@ -166,14 +180,22 @@ LitMesh cut_evenly(const SolverState& state, std::size_t most_vertices) {
   return build_lit_mesh(state.world->scene, g, shown, evenly, options);
 }
 
-void translate(LitMesh& mesh, const World& world, NodeId node, const Vec3& offset) {
-  const auto& nodes = world.scene.nodes;
-  for (LitPrimitive& p : mesh.primitives) {
-    NodeId at = world.geometry.primitive_instances[p.instance].node;
-    while (at.valid() && at != node) at = nodes[at].parent;
-    if (!at.valid()) continue;
-    for (Vec3& x : p.positions) x += offset;
+void translate(ViewMesh& mesh, const World& world, NodeId node, const Vec3& offset) {
+  const Geometry& g = world.geometry;
+  IdVector<InstanceId, std::uint8_t> moves(g.primitive_instances.size(), 0);
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    NodeId at = g.primitive_instances[InstanceId(i)].node;
+    while (at.valid() && at != node) at = world.scene.nodes[at].parent;
+    moves[InstanceId(i)] = at.valid() ? 1 : 0;
   }
+  std::vector<std::uint8_t> moved(mesh.positions.size(), 0);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    if (moves[g.instances[mesh.sources[i]]] != 0)
+      for (const std::uint32_t v : mesh.triangles[i]) moved[v] = 1;
+  for (std::size_t v = 0; v < moved.size(); ++v)
+    if (moved[v] != 0) mesh.positions[v] += offset;
+  refit(mesh.chunks, mesh.positions, mesh.triangles);
+  refit(mesh.simple_chunks, mesh.positions, mesh.simple);
 }
 
 ViewMesh make_view_mesh(const World& world, const LitMesh& lit) {

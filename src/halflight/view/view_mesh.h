@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -36,19 +37,20 @@ struct ViewMesh {
 };
 
 // Cuts the sides that can see light into triangles whose size suits the feature size, or larger
-// ones where that would be too many vertices.
-LitMesh cut_evenly(const SolverState& state, std::size_t most_vertices);
+// ones where that would be too many vertices. Of more triangles than `most_triangles` only the
+// largest are taken.
+LitMesh cut_evenly(const SolverState& state, std::size_t most_vertices,
+                   std::size_t most_triangles = std::numeric_limits<std::size_t>::max());
 
 // Edges of the simpler mesh that is drawn while the eye moves, metres.
 float simple_edge(const SolverState& state);
-
-// Moves what belongs to a node or to one below it.
-void translate(LitMesh& mesh, const World& world, NodeId node, const Vec3& offset);
 
 // Sides that light reaches, by the cells of a solution; the front where it reaches neither.
 IdVector<TriangleId, ShownSides> sides_worth_showing(const SolverState& state);
 
 ViewMesh make_view_mesh(const World& world, const LitMesh& mesh);
+// Moves what belongs to a node or to one below it.
+void translate(ViewMesh& mesh, const World& world, NodeId node, const Vec3& offset);
 // The light at the vertices of a lit mesh, in the order of its view mesh.
 std::vector<Rgb> vertex_light(const LitMesh& mesh);
 

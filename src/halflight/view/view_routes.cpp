@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kBinary = "application/octet-stream";
-constexpr double kAnswerSeconds = 5.0, kLayerSeconds = 30.0, kDownloadSeconds = 600.0;
+constexpr double kAnswerSeconds = 5.0, kLayerSeconds = 30.0;
 constexpr double kEventSeconds = 1.0;
 constexpr std::uint64_t kDeepest = 64;
 
@@ -118,18 +118,20 @@ WebReply layer(ViewSession& session, const WebRequest& request) {
   return reply_of(session.ask(std::move(question), kLayerSeconds), type);
 }
 
+// A solver that is busy has no answer to a pointer that passes by; that is no error.
 WebReply probe_reply(ViewSession& session, const WebRequest& request) {
   const auto ray = parse_probe_ray(request.body);
   if (!ray) return error_reply(ray.error());
-  return reply_of(
-      session.ask(
-          [ray = *ray](LiveSolution& live) -> Result<std::string> { return probe(live, ray); },
-          kAnswerSeconds),
-      "application/json");
+  const auto answer = session.ask(
+      [ray = *ray](LiveSolution& live) -> Result<std::string> { return probe(live, ray); },
+      kAnswerSeconds);
+  if (!answer && answer.error().kind == Error::Kind::system)
+    return web_text(200, "application/json", json_text({{"hit", false}, {"busy", true}}));
+  return reply_of(answer, "application/json");
 }
 
 WebReply lit_scene(ViewSession& session) {
-  WebReply reply = reply_of(session.ask(lit_glb, kDownloadSeconds), "model/gltf-binary");
+  WebReply reply = reply_of(session.ask_copy(lit_glb, kLayerSeconds), "model/gltf-binary");
   if (reply.status == 200) reply.download_name = "lit.glb";
   return reply;
 }
@@ -138,8 +140,9 @@ WebReply picture(ViewSession& session, const WebRequest& request) {
   const auto view = parse_view_of_interest(request.body);
   if (!view) return error_reply(view.error());
   WebReply reply =
-      reply_of(session.ask([view = *view](LiveSolution& live) { return hdr_picture(live, view); },
-                           kDownloadSeconds),
+      reply_of(session.ask_copy(
+                   [&view](const SolutionCopy& solution) { return hdr_picture(solution, *view); },
+                   kLayerSeconds),
                "image/x-exr");
   if (reply.status == 200) reply.download_name = "view.exr";
   return reply;

@@ -31,7 +31,9 @@ constexpr double kPublishingShare = 0.25, kPublishAtLeast = 0.05, kPublishAtMost
 constexpr double kPublishingGrowth = 0.1;         // of the interval, by the seconds solved
 constexpr std::size_t kEvenVertices = 60'000;     // of the first mesh, beside those of the scene
 constexpr std::size_t kMostVertices = 6'000'000;  // that a page is asked to hold
-constexpr std::size_t kMostSharpened = 700'000;   // vertices of the first mesh
+constexpr std::size_t kWholeAtOnce = 300'000;     // triangles of a scene
+constexpr std::size_t kFirstTriangles = 100'000;
+constexpr std::size_t kMostSharpened = 700'000;  // vertices of the first mesh
 // The sharp mesh is drawn many times a second, perhaps without a graphics card: coarser than the
 // one that `solve -o` writes.
 constexpr std::size_t kSharpVertices = 300'000;
@@ -166,23 +168,25 @@ Result<void> ViewSession::command(ViewCommand command) {
 
 // Leaves the processor alone after work that began at `start`, for as long as the page asks for it.
 void ViewSession::nap_after(Clock::time_point start, const std::function<bool()>& wake) {
-  const Clock::time_point now = Clock::now();
-  const Clock::time_point until{Clock::duration(give_way_until_.load())};
-  if (now >= until) return;
+  const Clock::time_point now = Clock::now(), end = now + kNapsPerWork * (now - start);
+  const auto until = [&] {
+    return std::min(end, Clock::time_point(Clock::duration(give_way_until_.load())));
+  };
   std::unique_lock lock(mutex_);
-  changed_.wait_until(lock, std::min(until, now + kNapsPerWork * (now - start)),
-                      [&] { return stop_ || wake(); });
+  bool awake = stop_;
+  while (!awake && Clock::now() < until())
+    awake = changed_.wait_until(lock, until(), [&] { return stop_ || wake(); });
 }
 
 Result<std::string> ViewSession::ask(Question question, double seconds) {
   auto answer = std::make_shared<std::promise<Result<std::string>>>();
   std::future<Result<std::string>> future = answer->get_future();
   auto run = [this, answer, question = std::move(question)] {
-    if (!draft_) {
+    if (!even_) {
       answer->set_value(input_error("the scene is not there yet", "live view", "wait a moment"));
       return;
     }
-    LiveSolution solution{live_, mesh_, *draft_, sharp_ ? &*sharp_ : nullptr};
+    LiveSolution solution{live_, shown().mesh, shown().draft, sharp_.get()};
     answer->set_value(question(solution));
   };
   if (auto posted = post({std::move(run), false}, false); !posted)
@@ -194,6 +198,18 @@ Result<std::string> ViewSession::ask(Question question, double seconds) {
   } catch (const std::future_error&) {  // the session ends
     return system_error("the live view has ended", "live view");
   }
+}
+
+Result<std::string> ViewSession::ask_copy(
+    const std::function<Result<std::string>(const SolutionCopy&)>& question, double seconds) {
+  const std::lock_guard one_at_a_time(copying_);
+  auto copy = std::make_shared<std::optional<SolutionCopy>>();
+  const auto take = [this, copy](LiveSolution& live) -> Result<std::string> {
+    copy->emplace(SolutionCopy{*live.scene.state, sharp_});
+    return std::string();
+  };
+  if (auto taken = ask(take, seconds); !taken) return taken;
+  return question(**copy);
 }
 
 // The solver's thread from here on.
@@ -253,8 +269,7 @@ bool ViewSession::start() {
       remedy_ = "Start it with --sky 1,1,1, or give a material emission.";
     }
   }
-  even_ = cut_evenly(*live_.state, kEvenVertices);
-  new_mesh(even_, false);
+  cut_anew();
   return true;
 }
 
@@ -267,6 +282,7 @@ void ViewSession::work() {
       if (stop_) return;
     }
     take_sharpened();
+    complete_mesh();
     if (may_advance()) {
       iterate();
       continue;
@@ -413,33 +429,31 @@ void ViewSession::apply(const ViewCommand& command) {
     if (same_triangles) {
       // The object is seen at its new place at once, in the light that it had.
       set_phase(Phase::solving);
-      if (mesh_.sharp) {
-        const ViewMesh before = make_view_mesh(*live_.world, even_);
-        draft_light_ = DraftLight(*live_.world, before).read(*live_.state).irradiance;
-      }
-      translate(even_, *live_.world, command.node, by);
-      new_mesh(even_, false);
-      if (draft_light_.size() == mesh_.positions.size())
-        frames_.add(mesh_.epoch, draft_light_, exposure_);
+      const bool had_light = !live_.state->history.empty();
+      const std::vector<Rgb> light = even_->draft.read(*live_.state).irradiance;
+      sharp_shown_.reset();
+      translate(even_->mesh, *live_.world, command.node, by);
+      show(*even_);
+      if (had_light) frames_.add(epoch_, light, exposure_);
       publish_status();
       follow_edits(live_, {command.node});
-      draft_ = std::make_unique<DraftLight>(*live_.world, mesh_);
+      even_->draft.restart(*live_.world);
     } else {
       follow_edits(live_, {command.node});
-      even_ = cut_evenly(*live_.state, kEvenVertices);
-      new_mesh(even_, false);
+      cut_anew();
     }
     restarted();
   } else if (again) {
     const float before = live_.state->options.feature_size;
     restart(live_);
     restarted();
-    if (live_.state->options.feature_size != before)
-      even_ = cut_evenly(*live_.state, kEvenVertices);
-    if (live_.state->options.feature_size != before || mesh_.sharp)
-      new_mesh(even_, false);
-    else
-      draft_ = std::make_unique<DraftLight>(*live_.world, mesh_);
+    restart_drafts();
+    if (live_.state->options.feature_size != before) {
+      cut_anew();
+    } else if (sharp_shown_) {
+      sharp_shown_.reset();
+      show(*even_);
+    }
   } else if (finer) {
     constexpr float kFinerWhereSeen = 2.f;
     const float by = command.error ? live_.state->options.error / options.error : kFinerWhereSeen;
@@ -459,7 +473,7 @@ void ViewSession::apply(const ViewCommand& command) {
     if (factors != live_.factors) {
       if (dim(live_, std::move(factors))) {
         restarted();
-        draft_ = std::make_unique<DraftLight>(*live_.world, mesh_);
+        restart_drafts();
       }
       light_changed();
       if (!live_.state->history.empty()) publish_light();
@@ -469,26 +483,42 @@ void ViewSession::apply(const ViewCommand& command) {
   publish_status();
 }
 
-void ViewSession::new_mesh(const LitMesh& lit, bool sharp) {
-  const std::uint32_t epoch = mesh_.epoch + 1;
-  mesh_ = make_view_mesh(*live_.world, lit);
-  mesh_.epoch = epoch;
-  mesh_.sharp = sharp;
-  draft_ = std::make_unique<DraftLight>(*live_.world, mesh_);
-  auto packet = std::make_shared<const std::string>(
-      topology_packet(mesh_, *live_.world, live_.first_view, live_.state->options.feature_size));
-  frames_.begin(epoch);
-  if (sharp) frames_.add(epoch, vertex_light(lit), exposure_);
+// The even mesh; of large scenes its largest triangles first, which are on the page much sooner.
+void ViewSession::cut_anew() {
+  partial_ = frames_since_restart_ == 0 && live_.world->geometry.triangles.size() > kWholeAtOnce;
+  sharp_shown_.reset();
+  const LitMesh cut = partial_ ? cut_evenly(*live_.state, kEvenVertices, kFirstTriangles)
+                               : cut_evenly(*live_.state, kEvenVertices);
+  even_ = std::make_unique<Shown>(*live_.world, make_view_mesh(*live_.world, cut));
+  show(*even_);
+}
+
+void ViewSession::complete_mesh() {
+  if (!partial_ || frames_since_restart_ == 0) return;
+  cut_anew();
+  publish_light();
+}
+
+void ViewSession::show(Shown& shown) {
+  shown.mesh.epoch = ++epoch_;
+  auto packet = std::make_shared<const std::string>(topology_packet(
+      shown.mesh, *live_.world, live_.first_view, live_.state->options.feature_size));
+  frames_.begin(epoch_);
   const std::lock_guard lock(mutex_);
   topology_ = std::move(packet);
 }
 
+// The state began again.
+void ViewSession::restart_drafts() {
+  even_->draft.restart(*live_.world);
+  if (sharp_shown_) sharp_shown_->draft.restart(*live_.world);
+}
+
 void ViewSession::publish_light() {
   const auto start = Clock::now();
-  DraftLight::Frame frame = draft_->read(*live_.state);
+  const DraftLight::Frame frame = shown().draft.read(*live_.state);
   exposure_ = frame.exposure;
-  frames_.add(mesh_.epoch, frame.irradiance, frame.exposure);
-  draft_light_ = std::move(frame.irradiance);
+  frames_.add(epoch_, frame.irradiance, frame.exposure);
   ++frames_since_restart_;
   last_publication_ = Clock::now();
   publishing_seconds_ = seconds_since(start);
@@ -509,8 +539,8 @@ void ViewSession::publish_status() {
   s["session"] = id_;
   if (live_.state) {
     const SolverState& state = *live_.state;
-    s["epoch"] = mesh_.epoch;
-    s["sharp"] = mesh_.sharp && sharp_.has_value();
+    s["epoch"] = epoch_;
+    s["sharp"] = sharp_shown_ && sharp_;
     s["featureSize"] = state.options.feature_size;
     s["errorWanted"] = live_.options.error;
     s["visibilityWanted"] = halflight::name_of(live_.options.visibility);
@@ -588,7 +618,7 @@ std::vector<Reading> ViewSession::read_in_portions(const SolutionReader& reader,
 // The finished solution, read exactly at the vertices of a mesh that follows the light, and how far
 // it is from the truth.
 void ViewSession::sharpen() {
-  if (mesh_.positions.size() > kMostSharpened && !mesh_.sharp) {
+  if (shown().mesh.positions.size() > kMostSharpened && !sharp_shown_) {
     sharpened_ = true;
     set_phase(Phase::done);
     return;
@@ -606,7 +636,7 @@ void ViewSession::sharpen() {
     options.coarse = 8.f * options.feature_size;
     options.tolerance = kSharpTolerance;
     options.simple = simple_edge(state);
-    options.max_vertices = std::max(kSharpVertices, 2 * mesh_.positions.size());
+    options.max_vertices = std::max(kSharpVertices, 2 * shown().mesh.positions.size());
     LitMesh mesh = build_lit_mesh(
         world.scene, world.geometry, sides_worth_showing(state),
         [&](std::span<const ReadingPoint> points) {
@@ -642,8 +672,12 @@ void ViewSession::take_sharpened() {
   sharpened_ = true;
   error_ = sharpened_result_->error;
   if (sharpened_result_->mesh) {
-    sharp_ = std::move(sharpened_result_->mesh);
-    new_mesh(*sharp_, true);
+    sharp_ = std::make_shared<const LitMesh>(std::move(*sharpened_result_->mesh));
+    ViewMesh mesh = make_view_mesh(*live_.world, *sharp_);
+    mesh.sharp = true;
+    sharp_shown_ = std::make_unique<Shown>(*live_.world, std::move(mesh));
+    show(*sharp_shown_);
+    frames_.add(epoch_, vertex_light(*sharp_), exposure_);
   }
   set_phase(Phase::done);
 }

@@ -45,6 +45,12 @@ struct LiveSolution {
   const LitMesh* sharp;  // null: not there, or of other light
 };
 
+// A copy of a solution, for what takes long to look at: the solver goes on meanwhile.
+struct SolutionCopy {
+  SolverState state;
+  std::shared_ptr<const LitMesh> sharp;  // as in LiveSolution
+};
+
 class ViewSession {
  public:
   using Loader = std::function<Result<Scene>()>;
@@ -69,6 +75,9 @@ class ViewSession {
   Result<void> command(ViewCommand command);
   // Waits for the answer; an error when it takes longer than `seconds`.
   Result<std::string> ask(Question question, double seconds);
+  // The same for what takes long: works on a copy, on the thread that asks, one at a time.
+  Result<std::string> ask_copy(
+      const std::function<Result<std::string>(const SolutionCopy&)>& question, double seconds);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -76,6 +85,15 @@ class ViewSession {
   struct Task {
     std::function<void()> run;
     bool changes = false;  // the solution: sharpening has to stop first
+  };
+  // What is drawn, and how its light is read.
+  struct Shown {
+    Shown(const World& world, ViewMesh view_mesh)
+        : mesh(std::move(view_mesh)), draft(world, mesh) {}
+    Shown(const Shown&) = delete;
+    Shown& operator=(const Shown&) = delete;
+    ViewMesh mesh;
+    DraftLight draft;
   };
   struct Sharpened {
     std::optional<EstimatedError> error;
@@ -95,7 +113,11 @@ class ViewSession {
   void apply(const ViewCommand& command);
   Result<void> check(const ViewCommand& command) const;
 
-  void new_mesh(const LitMesh& mesh, bool sharp);
+  Shown& shown() { return sharp_shown_ ? *sharp_shown_ : *even_; }
+  void cut_anew();
+  void complete_mesh();
+  void show(Shown& shown);
+  void restart_drafts();
   void publish_light();
   void publish_status();
   void set_phase(Phase phase);
@@ -114,11 +136,11 @@ class ViewSession {
 
   // The solver's thread alone.
   LiveScene live_;
-  LitMesh even_;  // drawn until there is a sharp one
-  ViewMesh mesh_;
-  std::vector<Rgb> draft_light_;  // of its vertices, as last published
-  std::unique_ptr<DraftLight> draft_;
-  std::optional<LitMesh> sharp_;
+  std::unique_ptr<Shown> even_;           // drawn until there is a sharp one
+  std::unique_ptr<Shown> sharp_shown_;    // takes its place
+  bool partial_ = false;                  // the even mesh is not whole yet
+  std::uint32_t epoch_ = 0;               // of the mesh that is drawn
+  std::shared_ptr<const LitMesh> sharp_;  // null: not there, or of other light
   std::optional<EstimatedError> error_;
   float exposure_ = 1.f;
   bool paused_ = false, step_ = false, finished_ = false, sharpened_ = false;
@@ -132,6 +154,7 @@ class ViewSession {
   std::unique_ptr<Progress> sharpening_progress_;
   std::unique_ptr<Sharpened> sharpened_result_;
 
+  std::mutex copying_;                         // held while somebody looks at a copy
   std::atomic<Clock::rep> give_way_until_{0};  // ticks of the clock
 
   mutable std::mutex mutex_;
