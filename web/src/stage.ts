@@ -8,7 +8,9 @@ import { disposeMaterial, recompile, shared, surfaceMaterials } from './surface'
 import type { View } from './connection'
 
 const kRestMilliseconds = 250
-const kLargeMesh = 500_000 // triangles: of larger meshes the smallest may be left out
+// Triangles: of larger meshes the smallest may be left out while something moves, or at rest.
+const kLargeMoving = 150_000
+const kLargeStill = 500_000
 const kLightShare = 0.4 // of the time, that may go into frames that only show new light
 const kStillMilliseconds = 700 // a frame of a large mesh at rest
 const kFirstRate = 1000 // triangles in a millisecond, until it is known
@@ -237,8 +239,9 @@ export class Stage {
     this.renderer.setSize(this.canvas.clientWidth, this.canvas.clientHeight, false)
   }
 
-  private isLarge(): boolean {
-    return (this.header?.triangles ?? 0) > kLargeMesh
+  private mayLeaveOut(hurried: boolean): boolean {
+    const shape = hurried ? this.simple : this.whole
+    return (shape?.geometry.index?.count ?? 0) > 3 * (hurried ? kLargeMoving : kLargeStill)
   }
 
   // Frames that the graphics card, or what stands for one, still has to draw; how long the others
@@ -278,22 +281,18 @@ export class Stage {
   // What is to be drawn now: nothing when nothing has changed. While something moves, resolution and
   // small triangles are given up for pace; at rest the picture becomes whole again, then smooth.
   private step(time: number, moving: boolean): boolean {
+    if (!this.mesh) return false
     const inQueue = this.underWay()
-    const large = this.isLarge()
-    if (inQueue > (large ? 0 : 1)) return false
-    if (moving) {
-      this.render(this.pace.resolution(), true, large ? this.pace.mostTriangles() : Infinity)
-      return true
-    }
+    if (inQueue > (this.mayLeaveOut(true) ? 0 : 1)) return false
     const still = time - this.lastMotion > kRestMilliseconds
     const since = time - this.lastDrawn
     if (!still) {
-      if (!this.wanted) return false
+      if (!moving && !this.wanted) return false
       this.wanted = false
-      this.render(this.pace.resolution(), true, large ? this.pace.mostTriangles() : Infinity)
+      this.render(this.pace.resolution(), true, this.mayLeaveOut(true) ? this.pace.mostTriangles() : Infinity)
       return true
     }
-    const most = large ? this.rate * kStillMilliseconds : Infinity
+    const most = this.mayLeaveOut(false) ? this.rate * kStillMilliseconds : Infinity
     const unfinished = this.applied !== 1 || this.drawn < Math.min(this.inSight, most) / 1.5
     if (unfinished || (this.wanted && (inQueue === 0 && since > this.cost / kLightShare))) {
       this.wanted = false
@@ -312,7 +311,7 @@ export class Stage {
     const moving = this.beforeDraw(seconds)
     if (moving) this.lastMotion = time
     if (!this.step(time, moving)) return
-    if (moving && this.wasMoving && time - this.lastDrawn < 1000) this.pace.learn(time - this.lastDrawn, this.isLarge())
+    if (moving && this.wasMoving && time - this.lastDrawn < 1000) this.pace.learn(time - this.lastDrawn, this.mayLeaveOut(true))
     if (moving && this.pace.isStruggling()) this.onStruggle()
     this.wasMoving = moving
     const gl = this.renderer.getContext() as WebGL2RenderingContext

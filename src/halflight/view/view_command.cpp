@@ -158,6 +158,7 @@ Result<ViewCommand> parse_view_command(std::string_view text) {
     command.important = *parsed;
   }
   read_groups(read, command);
+  if (command.give_way && object->size() > 1) read.fail("giveWay", "the only member");
   if (auto error = read.error()) return tl::unexpected(*error);
   if ((command.offset || command.shown) && !command.node.valid())
     return input_error("'node' says what is to be moved or switched", "request");

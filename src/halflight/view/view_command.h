@@ -14,7 +14,7 @@ namespace halflight {
 
 struct ViewCommand {
   std::optional<bool> paused;
-  bool give_way = false;              // the page needs the processor to draw, for a moment
+  bool give_way = false;              // alone: for a moment the page needs the processor
   bool step = false;                  // one iteration, though paused
   std::optional<float> feature_size;  // metres
   std::optional<float> error;

@@ -160,7 +160,10 @@ Result<void> ViewSession::check(const ViewCommand& command) const {
 
 Result<void> ViewSession::command(ViewCommand command) {
   if (auto ok = check(command); !ok) return ok;
-  if (command.give_way) give_way_until_ = (Clock::now() + kGiveWay).time_since_epoch().count();
+  if (command.give_way) {
+    give_way_until_ = (Clock::now() + kGiveWay).time_since_epoch().count();
+    return {};
+  }
   // What begins anew has no use for the iteration that runs.
   const bool hurry = command.offset || command.shown || command.feature_size || command.visibility;
   return post({[this, command = std::move(command)] { apply(command); }, true}, hurry);
