@@ -9,6 +9,7 @@ interface Chunk {
   box: THREE.Box3
   middle: THREE.Vector3
   radius: number
+  depth: number // half of its size along the axis
   axis: THREE.Vector3 // of a cone that holds all normals
   sine: number // of its half angle
 }
@@ -32,14 +33,17 @@ export class Chunks {
     for (let i = 0; i < words.length; i += kWords) {
       const vector = (at: number) => new THREE.Vector3(floats[i + at], floats[i + at + 1], floats[i + at + 2])
       const box = new THREE.Box3(vector(3), vector(6))
+      const size = box.getSize(new THREE.Vector3())
+      const axis = vector(9)
       this.chunks.push({
         draw: words[i],
         first: words[i + 1],
         count: words[i + 2],
         box,
         middle: box.getCenter(new THREE.Vector3()),
-        radius: 0.5 * box.getSize(new THREE.Vector3()).length(),
-        axis: vector(9),
+        radius: 0.5 * size.length(),
+        depth: 0.5 * (size.x * Math.abs(axis.x) + size.y * Math.abs(axis.y) + size.z * Math.abs(axis.z)),
+        axis,
         sine: floats[i + 12],
       })
     }
@@ -48,8 +52,11 @@ export class Chunks {
   private isSeen(chunk: Chunk, eye: THREE.Vector3): boolean {
     if (!this.frustum.intersectsBox(chunk.box)) return false
     // Backs everywhere: the eye lies behind all planes that touch the box and face into the cone.
+    // The sphere around the box is the better bound for wide cones, its depth for narrow ones.
     const along = this.ray.copy(chunk.middle).sub(eye)
-    return along.dot(chunk.axis) < chunk.sine * along.length() + chunk.radius
+    const [behind, distance] = [along.dot(chunk.axis), along.length()]
+    const isTurned = behind >= chunk.sine * distance + chunk.radius || behind >= chunk.sine * (distance + chunk.radius) + chunk.depth
+    return !isTurned
   }
 
   // Of chunks in sight the first triangles, which are the largest: so many of all that are in sight.

@@ -86,6 +86,7 @@ export class Layers {
   pixels = 12
   element: number | null = null
   legend: LayerLegend | null = null
+  onValues: () => void = () => {}
   onText: (text: string) => void = () => {}
   onFail: (error: Error) => void = () => {}
   private drawn: THREE.Object3D | null = null
@@ -211,6 +212,7 @@ export class Layers {
       return
     }
     this.stage.setValues(packet.floats('values'))
+    this.onValues()
     this.onText(
       packet.header.measured
         ? 'Cells against a final gather, relative to the mean irradiance or the local one'

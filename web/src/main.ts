@@ -114,6 +114,12 @@ async function pull(): Promise<void> {
   pulling = false
 }
 
+function fullFigure(high: number): number {
+  const step = 10 ** Math.floor(Math.log10(high || 1))
+  return Math.ceil(high / step) * step
+}
+
+const kLeastErrorScale = 0.2
 export function applyPicture(): void {
   shared.exposure.value = autoExposure * 2 ** picture.ev
   const isError = layers.layer === 'error'
@@ -122,14 +128,14 @@ export function applyPicture(): void {
   if (otherMap || otherShow) stage.recompile()
   const factor = kUnits[picture.unit]
   if (picture.autoScale) {
-    const high = factor * stage.highIlluminance()
-    const step = 10 ** Math.floor(Math.log10(high || 1))
-    picture.scale = Math.ceil(high / step) * step
+    picture.scale = fullFigure(factor * stage.highIlluminance())
   }
   shared.factor.value = factor
-  shared.scale.value = isError ? 0.2 : picture.scale
+  // The bounds of the first links are far above what is aimed at.
+  const errorScale = isError ? Math.max(kLeastErrorScale, fullFigure(stage.highValue())) : 0
+  shared.scale.value = isError ? errorScale : picture.scale
   const legend: LayerLegend | null = isError
-    ? { title: 'Error', low: 0, high: 20, unit: '%' }
+    ? { title: 'Error', low: 0, high: 100 * errorScale, unit: '%' }
     : picture.show === 'irradiance'
       ? { title: picture.unit === 'lux' ? 'Illuminance' : 'Irradiance', low: 0, high: picture.scale, unit: picture.unit }
       : layers.legend
@@ -344,6 +350,7 @@ export const actions = {
 }
 layers.onText = (text) => panel.layerText(text)
 layers.onFail = fail
+layers.onValues = applyPicture
 
 panel = makePanel(element('panel'), { picture, layers, mover, motion, actions, applyPicture })
 

@@ -15,6 +15,13 @@ const kLightShare = 0.4 // of the time, that may go into frames that only show n
 const kStillMilliseconds = 700 // a frame of a large mesh at rest
 const kFirstRate = 1000 // triangles in a millisecond, until it is known
 
+function high(count: number, of: (i: number) => number): number {
+  const values: number[] = []
+  for (let i = 0; i < count; i += Math.max(1, Math.floor(count / 20000))) values.push(of(i))
+  values.sort((a, b) => a - b)
+  return values.length ? values[Math.floor(0.98 * (values.length - 1))] : 1
+}
+
 interface Drawable {
   geometry: THREE.BufferGeometry
   chunks: Chunks
@@ -153,15 +160,16 @@ export class Stage {
   // 98 % of the vertices have less illuminance than this, in the scene's unit.
   highIlluminance(): number {
     const light = (this.light?.array ?? new Uint32Array()) as Uint32Array
-    const values: number[] = []
-    const step = Math.max(1, Math.floor(light.length / 20000))
-    for (let i = 0; i < light.length; i += step) {
+    return high(light.length, (i) => {
       const e = light[i]
       const scale = shared.lightScale.value * 2 ** ((e >>> 27) - 24)
-      values.push((0.2126 * (e & 511) + 0.7152 * ((e >>> 9) & 511) + 0.0722 * ((e >>> 18) & 511)) * scale)
-    }
-    values.sort((a, b) => a - b)
-    return values.length ? values[Math.floor(0.98 * (values.length - 1))] : 1
+      return (0.2126 * (e & 511) + 0.7152 * ((e >>> 9) & 511) + 0.0722 * ((e >>> 18) & 511)) * scale
+    })
+  }
+  // The same of the values.
+  highValue(): number {
+    const values = (this.value?.array ?? new Float32Array()) as Float32Array
+    return high(values.length, (i) => values[i])
   }
 
   setView(view: { position: number[]; forward: number[]; up: number[]; fov: number }): void {

@@ -10,7 +10,7 @@ namespace halflight {
 namespace {
 
 // Each chunk may be a draw call of its own, so there are no more than a few hundred full ones.
-constexpr std::size_t kChunkTriangles = 2048, kFullChunks = 512;
+constexpr std::size_t kChunkTriangles = 1024, kFullChunks = 512;
 constexpr std::size_t kGrain = 4096;
 
 struct Facet {
