@@ -222,7 +222,7 @@ test('pictures and the lit scene can be taken home', async () => {
   await settled(page)
   await unfold(page, 'Take home')
   const download = async (label) => {
-    const [file] = await Promise.all([page.waitForEvent('download', { timeout: 60_000 }), press(page, label)])
+    const [file] = await Promise.all([page.waitForEvent('download', { timeout: 180_000 }), press(page, label)])
     return readFileSync(await file.path())
   }
   assert.equal((await download('screenshot (PNG)')).subarray(1, 4).toString(), 'PNG')
