@@ -371,6 +371,7 @@ TEST(LiveView, ShowsWhatTheSolverWorksWith) {
 
 TEST(LiveView, LeavesTheProcessorToThePageThatAsksForIt) {
   Live live(room(), 0.02f);
+  ASSERT_TRUE(live.wait([](const json& s) { return s["version"].get<int>() > 0; }));
   // From the end of one iteration to the end of another one.
   const auto after = [&](std::size_t iterations) {
     live.wait([&](const json& s) {
