@@ -31,7 +31,7 @@ constexpr std::array kPaperSeconds{2069, 1984, 1648, 1459, 1356};
 // knows.
 ClusterTree cluster_bodies(const Surfaces& surfaces) {
   const Bodies& bodies = surfaces.bodies;
-  std::vector<Bounds3f> boxes(bodies.members.size());
+  std::vector<Bounds3f> boxes(bodies.size());
   std::vector<std::vector<SurfaceId>> sides(boxes.size());
   for (std::size_t i = 0; i < surfaces.surfaces.size(); ++i) {
     const Surface& surface = surfaces[SurfaceId(i)];

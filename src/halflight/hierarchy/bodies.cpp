@@ -22,13 +22,22 @@ Bodies find_bodies(const Geometry& g, const IdVector<VertexId, VertexId>& welded
   Bodies bodies;
   bodies.of_triangle.resize(g.triangles.size());
   std::vector<BodyId> numbered(g.positions.size());
+  bodies.first.push_back(0);
   for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
     BodyId& body = numbered[find(welded[g.triangles[TriangleId(t)][0]].value)];
-    if (!body.valid()) body = bodies.members.push_back({});
+    if (!body.valid()) {
+      body = BodyId(bodies.first.size() - 1);
+      bodies.first.push_back(0);
+    }
     bodies.of_triangle[TriangleId(t)] = body;
-    bodies.members[body].push_back(TriangleId(t));
+    ++bodies.first[body.value + 1];
   }
-  bodies.closed.resize(bodies.members.size(), 1);
+  std::partial_sum(bodies.first.begin(), bodies.first.end(), bodies.first.begin());
+  bodies.triangles.resize(g.triangles.size());
+  std::vector<std::uint32_t> next = bodies.first;
+  for (std::uint32_t t = 0; t < g.triangles.size(); ++t)
+    bodies.triangles[next[bodies.of_triangle[TriangleId(t)].value]++] = TriangleId(t);
+  bodies.closed.resize(bodies.first.size() - 1, 1);
   for (auto e = sorted_half_edges.begin(); e != sorted_half_edges.end();) {
     const HalfEdge& first = *e;
     std::size_t forward = 0, backward = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <span>
 
 #include "halflight/base/parallel.h"
 #include "halflight/rays/sampling.h"
@@ -27,7 +28,7 @@ struct Openings {
 };
 
 Openings find_openings(const Scene& scene, const Geometry& g, const Bodies& bodies) {
-  const std::size_t n = bodies.members.size();
+  const std::size_t n = bodies.size();
   Openings openings{IdVector<BodyId, std::uint8_t>(n, 0), IdVector<BodyId, std::uint8_t>(n, 0)};
   for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
     const Material& m = scene.materials[g.materials[TriangleId(t)]];
@@ -42,7 +43,7 @@ Vec3 direction_about(const Vec3& n, std::uint32_t i, std::uint64_t seed) {
   return Frame::from_normal(n).to_world(cosine_hemisphere(r2_sequence(i, random_shift(seed))));
 }
 
-Bounds3f bounds_of(const Geometry& g, const std::vector<TriangleId>& triangles) {
+Bounds3f bounds_of(const Geometry& g, std::span<const TriangleId> triangles) {
   Bounds3f box;
   for (const TriangleId t : triangles)
     for (const Vec3& corner : g.corners(t)) box.extend(corner);
@@ -56,7 +57,7 @@ std::uint32_t scaled_to(float size, const Geometry& g, std::uint32_t trials) {
 // Every ray that leaves this side of the closed body meets the same side of the same body again.
 bool sees_only_itself(const Geometry& g, const RayScene& rays, const Bodies& bodies, BodyId id,
                       bool back) {
-  const auto& members = bodies.members[id];
+  const std::span<const TriangleId> members = bodies.members(id);
   const float size = bounds_of(g, members).diagonal();
   const float reach = size + 4.f * rays.lift_distance();  // beyond it nothing is of this body
   for (std::uint32_t i = 0; i < scaled_to(size, g, kRaysPerBody); ++i) {
@@ -76,7 +77,7 @@ bool sees_only_itself(const Geometry& g, const RayScene& rays, const Bodies& bod
 // small bodies are asked: a dark room behind a door left ajar must not be taken for one.
 bool is_sealed_off(const Scene& scene, const Geometry& g, const RayScene& rays,
                    const Bodies& bodies, BodyId id, bool back) {
-  const auto& members = bodies.members[id];
+  const std::span<const TriangleId> members = bodies.members(id);
   const Bounds3f box = bounds_of(g, members);
   if (box.diagonal() > kLargestChamber * g.bounds.diagonal()) return false;
   const Vec3 margin(4.f * rays.lift_distance());
@@ -144,7 +145,7 @@ struct LitByEmission {
 LitByEmission find_lit_by_emission(const Scene& scene, const Geometry& g, const Surfaces& surfaces,
                                    const RayScene& rays, const Bodies& bodies) {
   LitByEmission lit{std::vector<std::atomic<std::uint8_t>>(2 * surfaces.surfaces.size()),
-                    std::vector<std::atomic<std::uint8_t>>(2 * bodies.members.size())};
+                    std::vector<std::atomic<std::uint8_t>>(2 * bodies.size())};
   follow_emission(scene, g, surfaces, rays, [&](SideId side) {
     const TriangleId t = surfaces.triangles[surfaces[side].first_triangle];
     lit.sides[side.value].store(1, std::memory_order_relaxed);
@@ -161,13 +162,13 @@ IdVector<SideId, std::uint8_t> find_live_sides(const Scene& scene, const Geometr
   const Bodies& bodies = surfaces.bodies;
   const Openings openings = find_openings(scene, g, bodies);
   const LitByEmission lit = find_lit_by_emission(scene, g, surfaces, rays, bodies);
-  std::vector<std::uint8_t> dead(2 * bodies.members.size(), 0);
+  std::vector<std::uint8_t> dead(2 * bodies.size(), 0);
   parallel_for(dead.size(), 8, [&](std::size_t i) {
     const BodyId id(i / 2);
     const bool back = i % 2 != 0;
     if (openings.transparent[id] || lit.bodies[i]) return;
     const bool lit_by_itself =
-        std::any_of(bodies.members[id].begin(), bodies.members[id].end(),
+        std::any_of(bodies.members(id).begin(), bodies.members(id).end(),
                     [&](TriangleId t) { return scene.materials[g.materials[t]].emits(); }) &&
         (!back || openings.emits_back[id]);
     if (lit_by_itself) return;

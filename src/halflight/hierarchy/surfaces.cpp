@@ -75,7 +75,7 @@ void align_with_border(const Geometry& g, const Surfaces& surfaces,
                        const std::vector<std::array<TriangleId, 3>>& neighbours, Surface& s) {
   Vec3 longest(0.f);
   const SurfaceId id = surfaces.of_triangle[surfaces.triangles[s.first_triangle]];
-  for (std::size_t i = s.first_triangle; i < surfaces.triangles.size(); ++i) {
+  for (std::size_t i = s.first_triangle; i < s.first_triangle + s.triangle_count; ++i) {
     const TriangleId t = surfaces.triangles[i];
     const auto corner = g.corners(t);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -91,91 +91,143 @@ void align_with_border(const Geometry& g, const Surfaces& surfaces,
   s.axis_v = glm::normalize(glm::cross(s.normal, s.axis_u));
 }
 
-void measure(const Geometry& g, const Surfaces& surfaces, Surface& s) {
+void measure(const Geometry& g, Surfaces& surfaces, Surface& s) {
   s.uv_lower = Vec2(kInfinity);
   s.uv_upper = Vec2(-kInfinity);
-  for (std::size_t i = s.first_triangle; i < surfaces.triangles.size(); ++i)
-    for (const Vec3& p : g.corners(surfaces.triangles[i])) {
+  for (std::size_t i = s.first_triangle; i < s.first_triangle + s.triangle_count; ++i) {
+    const TriangleId t = surfaces.triangles[i];
+    s.area += g.area(t);
+    surfaces.cumulative_area[i] = s.area;
+    for (const Vec3& p : g.corners(t)) {
       s.box.extend(p);
       s.uv_lower = glm::min(s.uv_lower, s.to_plane(p));
       s.uv_upper = glm::max(s.uv_upper, s.to_plane(p));
     }
+  }
 }
 
-// Renumbers surfaces, and their triangles with them.
-void order_along_curve(const Geometry& g, Surfaces& surfaces) {
-  const std::size_t n = surfaces.surfaces.size();
-  std::vector<std::uint64_t> codes(n);
-  parallel_for(n, 4096, [&](std::size_t i) {
-    codes[i] = morton_code(surfaces[SurfaceId(i)].box.center(), g.bounds);
+// Triangles by the surface that they belong to; the first of each gives it its plane.
+struct Groups {
+  std::vector<TriangleId> triangles;
+  std::vector<std::uint32_t> first;  // of each group; one more than groups
+  std::size_t size() const { return first.size() - 1; }
+};
+
+// Whether a triangle can lie in one surface with one of its neighbours. Both would lie within
+// kSameNormal of a third one's plane.
+bool may_be_joined(const Geometry& g, TriangleId t, const std::array<TriangleId, 3>& neighbours) {
+  const Vec3 n = g.scaled_normal(t);
+  return std::any_of(neighbours.begin(), neighbours.end(), [&](TriangleId other) {
+    if (!other.valid() || g.materials[other] != g.materials[t]) return false;
+    const Vec3 m = g.scaled_normal(other);
+    return glm::dot(n, m) > 0.f && glm::length(glm::cross(n, m)) <=
+                                       3.f * kSameNormal * glm::length(n) * glm::length(m);
   });
-  Surfaces ordered;
-  ordered.surfaces.reserve(n);
-  ordered.triangles.reserve(surfaces.triangles.size());
-  ordered.cumulative_area.reserve(surfaces.triangles.size());
-  for (const std::uint32_t i : order_by_key(codes)) {
-    Surface s = surfaces[SurfaceId(i)];
-    const std::size_t first = s.first_triangle;
-    s.first_triangle = static_cast<std::uint32_t>(ordered.triangles.size());
-    const SurfaceId id = ordered.surfaces.push_back(s);
-    for (std::size_t k = first; k < first + s.triangle_count; ++k) {
-      ordered.triangles.push_back(surfaces.triangles[k]);
-      ordered.cumulative_area.push_back(surfaces.cumulative_area[k]);
-      surfaces.of_triangle[surfaces.triangles[k]] = id;
-    }
+}
+
+// Grows surfaces from the largest triangles; those that nothing can join are left for the end.
+Groups group_triangles(const Geometry& g,
+                       const std::vector<std::array<TriangleId, 3>>& neighbours) {
+  const std::size_t n = g.triangles.size();
+  std::vector<std::uint8_t> joinable(n);
+  parallel_for(n, 4096, [&](std::size_t i) {
+    joinable[i] = may_be_joined(g, TriangleId(i), neighbours[i]);
+  });
+  struct Seed {
+    float area;
+    std::uint32_t triangle;
+  };
+  std::vector<Seed> seeds;
+  for (std::uint32_t i = 0; i < n; ++i)
+    if (joinable[i]) seeds.push_back({g.area(TriangleId(i)), i});
+  parallel_sort(seeds, [](const Seed& a, const Seed& b) {
+    return std::tie(b.area, a.triangle) < std::tie(a.area, b.triangle);
+  });
+
+  Groups groups;
+  groups.triangles.reserve(n);
+  groups.first.reserve(n + 1);
+  std::vector<std::uint8_t> taken(n, 0);
+  for (const Seed& seed : seeds) {
+    if (taken[seed.triangle]) continue;
+    const Surface plane = plane_of(g, TriangleId(seed.triangle));
+    const float tolerance = kSamePlane * std::sqrt(seed.area);
+    groups.first.push_back(static_cast<std::uint32_t>(groups.triangles.size()));
+    groups.triangles.emplace_back(seed.triangle);
+    taken[seed.triangle] = 1;
+    for (std::size_t next = groups.first.back(); next < groups.triangles.size(); ++next)
+      for (const TriangleId other : neighbours[groups.triangles[next].value]) {
+        if (!other.valid() || taken[other.value] || !lies_in(g, other, plane, tolerance)) continue;
+        taken[other.value] = 1;
+        groups.triangles.push_back(other);
+      }
   }
-  surfaces.surfaces = std::move(ordered.surfaces);
-  surfaces.triangles = std::move(ordered.triangles);
-  surfaces.cumulative_area = std::move(ordered.cumulative_area);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (taken[i]) continue;
+    groups.first.push_back(static_cast<std::uint32_t>(groups.triangles.size()));
+    groups.triangles.emplace_back(i);
+  }
+  groups.first.push_back(static_cast<std::uint32_t>(n));
+  return groups;
+}
+
+std::vector<std::uint32_t> order_along_curve(const Geometry& g, const Groups& groups) {
+  std::vector<std::uint64_t> codes(groups.size());
+  parallel_for(groups.size(), 4096, [&](std::size_t i) {
+    Bounds3f box;
+    for (std::size_t k = groups.first[i]; k < groups.first[i + 1]; ++k)
+      for (const Vec3& p : g.corners(groups.triangles[k])) box.extend(p);
+    codes[i] = morton_code(box.center(), g.bounds);
+  });
+  return order_by_key(codes);
+}
+
+Surfaces make_surfaces(const Geometry& g, const Groups& groups,
+                       const std::vector<std::array<TriangleId, 3>>& neighbours) {
+  const std::vector<std::uint32_t> order = order_along_curve(g, groups);
+  Surfaces result;
+  result.surfaces.resize(groups.size());
+  result.triangles.resize(g.triangles.size());
+  result.cumulative_area.resize(g.triangles.size());
+  result.of_triangle.resize(g.triangles.size());
+  std::uint32_t first = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    Surface& s = result.surfaces[SurfaceId(i)];
+    s.first_triangle = first;
+    s.triangle_count = groups.first[order[i] + 1] - groups.first[order[i]];
+    first += s.triangle_count;
+  }
+  const auto for_all = [&](const auto& act) {
+    parallel_for(order.size(), 1024, [&](std::size_t i) { act(i, result.surfaces[SurfaceId(i)]); });
+  };
+  for_all([&](std::size_t i, const Surface& s) {
+    for (std::uint32_t k = 0; k < s.triangle_count; ++k) {
+      const TriangleId t = groups.triangles[groups.first[order[i]] + k];
+      result.triangles[s.first_triangle + k] = t;
+      result.of_triangle[t] = SurfaceId(i);
+    }
+  });
+  for_all([&](std::size_t, Surface& s) {
+    const std::uint32_t from = s.first_triangle, count = s.triangle_count;
+    s = plane_of(g, result.triangles[from]);
+    s.first_triangle = from;
+    s.triangle_count = count;
+    if (count > 1) align_with_border(g, result, neighbours, s);
+    measure(g, result, s);
+  });
+  return result;
 }
 
 }  // namespace
 
 Surfaces build_surfaces(const Geometry& g) {
-  const std::size_t n = g.triangles.size();
   const IdVector<VertexId, VertexId> welded = weld_positions(g);
-  const std::vector<HalfEdge> edges = sorted_half_edges(g, welded);
-  const auto neighbours = manifold_neighbours(edges, n);
-
-  std::vector<float> area(n);
-  parallel_for(n, 4096, [&](std::size_t i) { area[i] = g.area(TriangleId(i)); });
-  std::vector<std::uint32_t> largest_first(n);
-  std::iota(largest_first.begin(), largest_first.end(), 0u);
-  parallel_sort(largest_first, [&](std::uint32_t a, std::uint32_t b) {
-    return std::tie(area[b], a) < std::tie(area[a], b);
-  });
-
-  Surfaces result;
-  result.bodies = find_bodies(g, welded, edges);
-  result.of_triangle.resize(n);
-  result.triangles.reserve(n);
-  result.cumulative_area.reserve(n);
-  for (const std::uint32_t seed : largest_first) {
-    if (result.of_triangle[TriangleId(seed)].valid()) continue;
-    const SurfaceId id(result.surfaces.size());
-    Surface s = plane_of(g, TriangleId(seed));
-    s.first_triangle = static_cast<std::uint32_t>(result.triangles.size());
-    const float tolerance = kSamePlane * std::sqrt(area[seed]);
-
-    result.triangles.push_back(TriangleId(seed));
-    result.of_triangle[TriangleId(seed)] = id;
-    for (std::size_t next = s.first_triangle; next < result.triangles.size(); ++next) {
-      const TriangleId t = result.triangles[next];
-      s.area += area[t.value];
-      result.cumulative_area.push_back(s.area);
-      for (const TriangleId other : neighbours[t.value]) {
-        if (!other.valid() || result.of_triangle[other].valid()) continue;
-        if (!lies_in(g, other, s, tolerance)) continue;
-        result.of_triangle[other] = id;
-        result.triangles.push_back(other);
-      }
-    }
-    s.triangle_count = static_cast<std::uint32_t>(result.triangles.size()) - s.first_triangle;
-    if (s.triangle_count > 1) align_with_border(g, result, neighbours, s);
-    measure(g, result, s);
-    result.surfaces.push_back(s);
-  }
-  order_along_curve(g, result);
+  std::vector<HalfEdge> edges = sorted_half_edges(g, welded);
+  const auto neighbours = manifold_neighbours(edges, g.triangles.size());
+  Bodies bodies = find_bodies(g, welded, edges);
+  std::vector<HalfEdge>().swap(edges);
+  Surfaces result = make_surfaces(g, group_triangles(g, neighbours), neighbours);
+  result.bodies = std::move(bodies);
   return result;
 }
 
