@@ -14,8 +14,10 @@ constexpr std::uint32_t kRaysPerBody = 256;
 constexpr std::uint32_t kWalks = 64;
 // Small things get fewer of both: there are many, and what a mistake could lose is little.
 constexpr float kSmallBody = 0.01f;  // of the scene's diagonal
-constexpr std::uint32_t kFewer = 8;
+constexpr std::uint32_t kFewerRays = 8, kFewerWalks = 16;
 constexpr int kStepsOfWalk = 8;
+constexpr std::size_t kMostConvexFaces = 64;
+constexpr float kConvexWithin = 1e-4f;    // of the body's height above a face
 constexpr float kLargestChamber = 0.25f;  // share of the scene's diagonal
 constexpr std::uint32_t kRaysPerLargeSide = 64;
 constexpr std::uint32_t kRaysPerEmitter = 32;  // of each side of each emitting triangle
@@ -50,17 +52,40 @@ Bounds3f bounds_of(const Geometry& g, std::span<const TriangleId> triangles) {
   return box;
 }
 
-std::uint32_t scaled_to(float size, const Geometry& g, std::uint32_t trials) {
-  return size < kSmallBody * g.bounds.diagonal() ? trials / kFewer : trials;
+std::uint32_t scaled_to(float size, const Geometry& g, std::uint32_t trials, std::uint32_t fewer) {
+  return size < kSmallBody * g.bounds.diagonal() ? trials / fewer : trials;
+}
+
+// This side is the inside of a small convex body, known without a ray. In larger ones there may be
+// a lamp that lights them by way of other things.
+bool is_inside_of_convex(const Geometry& g, const RayScene& rays, std::span<const TriangleId> body,
+                         bool back) {
+  if (body.size() > kMostConvexFaces ||
+      !(bounds_of(g, body).diagonal() < kSmallBody * g.bounds.diagonal()))
+    return false;
+  const float flat = 4.f * rays.lift_distance();
+  return std::all_of(body.begin(), body.end(), [&](TriangleId face) {
+    const Vec3 at = g.corners(face)[0];
+    const Vec3 n = glm::normalize(g.scaled_normal(face)) * (back ? -1.f : 1.f);
+    float lowest = 0.f, highest = 0.f;
+    for (const TriangleId t : body)
+      for (const Vec3& p : g.corners(t)) {
+        const float height = glm::dot(p - at, n);
+        lowest = std::min(lowest, height);
+        highest = std::max(highest, height);
+      }
+    return highest > flat && lowest > -kConvexWithin * highest;
+  });
 }
 
 // Every ray that leaves this side of the closed body meets the same side of the same body again.
 bool sees_only_itself(const Geometry& g, const RayScene& rays, const Bodies& bodies, BodyId id,
                       bool back) {
   const std::span<const TriangleId> members = bodies.members(id);
+  if (is_inside_of_convex(g, rays, members, back)) return true;
   const float size = bounds_of(g, members).diagonal();
   const float reach = size + 4.f * rays.lift_distance();  // beyond it nothing is of this body
-  for (std::uint32_t i = 0; i < scaled_to(size, g, kRaysPerBody); ++i) {
+  for (std::uint32_t i = 0; i < scaled_to(size, g, kRaysPerBody, kFewerRays); ++i) {
     const std::uint64_t seed = hash(id.value, i, back);
     const TriangleId t = members[seed % members.size()];
     const auto [a, b, c] = g.corners(t);
@@ -82,7 +107,7 @@ bool is_sealed_off(const Scene& scene, const Geometry& g, const RayScene& rays,
   if (box.diagonal() > kLargestChamber * g.bounds.diagonal()) return false;
   const Vec3 margin(4.f * rays.lift_distance());
   const float reach = box.diagonal() + 4.f * glm::length(margin);  // who gets so far has left it
-  for (std::uint32_t i = 0; i < scaled_to(box.diagonal(), g, kWalks); ++i) {
+  for (std::uint32_t i = 0; i < scaled_to(box.diagonal(), g, kWalks, kFewerWalks); ++i) {
     const TriangleId start = members[hash(id.value, i, back, 1) % members.size()];
     const auto [a, b, c] = g.corners(start);
     Vec3 p = (a + b + c) / 3.f;
@@ -163,7 +188,7 @@ IdVector<SideId, std::uint8_t> find_live_sides(const Scene& scene, const Geometr
   const Openings openings = find_openings(scene, g, bodies);
   const LitByEmission lit = find_lit_by_emission(scene, g, surfaces, rays, bodies);
   std::vector<std::uint8_t> dead(2 * bodies.size(), 0);
-  parallel_for(dead.size(), 8, [&](std::size_t i) {
+  parallel_for(dead.size(), 64, [&](std::size_t i) {
     const BodyId id(i / 2);
     const bool back = i % 2 != 0;
     if (openings.transparent[id] || lit.bodies[i]) return;
