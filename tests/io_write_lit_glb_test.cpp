@@ -50,11 +50,10 @@ std::vector<LitPrimitive> light_up(const Scene& s, const Geometry& g) {
     const Primitive& source = s.meshes[what.mesh].primitives[what.primitive];
     for (const VertexId v : what.vertices) {
       p.positions.push_back(g.positions[v]);
-      const bool none =
-          g.normals[v] == Vec3(0.f);  // a flat node has no inverse to place normals by
-      p.normals.push_back(none ? glm::normalize(g.scaled_normal(what.triangles[0])) : g.normals[v]);
+      const bool none = g.normal(v) == Vec3(0.f);  // a flat node has no inverse to place normals by
+      p.normals.push_back(none ? glm::normalize(g.scaled_normal(what.triangles[0])) : g.normal(v));
       for (std::size_t set = 0; set < 2; ++set)
-        if (!source.uvs[set].empty()) p.uvs[set].push_back(g.uvs[set][v]);
+        if (!source.uvs[set].empty()) p.uvs[set].push_back(g.uv(set, v));
       p.irradiance.push_back((1.f + g.positions[v].y) * Rgb(1, 2, 3));
     }
     for (const TriangleId t : what.triangles) {

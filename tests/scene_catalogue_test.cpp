@@ -45,7 +45,7 @@ TEST_P(BuiltInScene, HasTrianglesCamerasAndNames) {
 TEST_P(BuiltInScene, NormalsOfTheFileAgreeWithTheWinding) {
   for_each_triangle(geometry_, [&](TriangleId t) {
     for (const VertexId v : geometry_.triangles[t])
-      ASSERT_GT(glm::dot(geometry_.normals[v], geometry_.scaled_normal(t)), 0.f) << t.value;
+      ASSERT_GT(glm::dot(geometry_.normal(v), geometry_.scaled_normal(t)), 0.f) << t.value;
   });
 }
 

@@ -57,6 +57,9 @@ ElementTree::ElementTree(const Geometry& geometry, const Surfaces& surfaces,
     : geometry_(&geometry), surfaces_(&surfaces), side_roots_(2 * surfaces.surfaces.size()) {
   const std::vector<bool> used = inhabited(clusters, live);
   std::vector<std::pair<ElementId, std::uint32_t>> open{{ElementId(0), clusters.root}};
+  elements_.reserve(static_cast<std::size_t>(std::count(used.begin(), used.end(), true) +
+                                             std::count(live.begin(), live.end(), 1)) +
+                    1);
   elements_.push_back({});
   levels_ = {{0, 1}};
   for (std::size_t next = 0; next < open.size(); ++next) {

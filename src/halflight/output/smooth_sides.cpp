@@ -19,7 +19,7 @@ FaceCorner measure_corner(const Geometry& g, TriangleFace f, std::size_t k) {
   const Vec3 face = side * glm::normalize(g.scaled_normal(f.triangle));
   const Vec3 to_next = glm::normalize(p[(at + 1) % 3] - p[at]);
   const Vec3 to_last = glm::normalize(p[(at + 2) % 3] - p[at]);
-  const Vec3 given = side * g.normals[g.triangles[f.triangle][at]];
+  const Vec3 given = side * g.normal(g.triangles[f.triangle][at]);
   FaceCorner c;
   c.given = glm::dot(given, face) > kCosGivenNormal;
   c.normal = c.given ? given : face;

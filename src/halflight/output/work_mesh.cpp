@@ -130,7 +130,7 @@ WorkMesh make_work_mesh(const Geometry& g, WeldedPoints points, const SharedEdge
     shape.inwards += c.angle * c.inwards;
     shape.on_border |= !continues_at[i / 3][i % 3] || !continues_at[i / 3][(i + 2) % 3];
     sheet.corners[i % 3] = mesh.find_or_add_vertex(site, g.instances[sheet.source], sheet.back,
-                                                   {g.uvs[0][v], g.uvs[1][v]});
+                                                   {g.uv(0, v), g.uv(1, v)});
   }
   for (std::uint32_t i = 0; i < corners.all.size(); ++i) {
     SiteShape& shape = shapes[site_of[i].value];

@@ -60,6 +60,7 @@ struct RayScene::Impl {
   mutable Counter rays;
   // Embree geometry 0 holds the opaque triangles, 1 those that may let light through.
   std::array<std::vector<TriangleId>, 2> triangles;
+  bool all_opaque = false;  // then there are no lists, and triangles have their own numbers
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
@@ -79,10 +80,16 @@ struct RayScene::Impl {
 
   void attach(unsigned which) {
     RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const auto& ids = triangles[which];
     rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                geometry->positions.raw().data(), 0, sizeof(Vec3),
                                geometry->positions.size());
+    const auto& ids = triangles[which];
+    if (all_opaque) {
+      rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                 geometry->triangles.raw().data(), 0, sizeof(std::uint32_t[3]),
+                                 geometry->triangles.size());
+      return finish(mesh, which);
+    }
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), ids.size()));
     check();
@@ -92,9 +99,17 @@ struct RayScene::Impl {
       rtcSetGeometryOccludedFilterFunction(mesh, attenuate);
       rtcSetGeometryIntersectFilterFunction(mesh, pass_by_chance);
     }
+    finish(mesh, which);
+  }
+  void finish(RTCGeometry mesh, unsigned which) {
+    check();
     rtcCommitGeometry(mesh);
     rtcAttachGeometryByID(scene, mesh, which);
     rtcReleaseGeometry(mesh);
+  }
+
+  TriangleId triangle_of(unsigned mesh, unsigned primitive) const {
+    return all_opaque ? TriangleId(primitive) : triangles[mesh][primitive];
   }
 
   std::optional<RayHit> intersect(const Vec3& origin, const Vec3& direction, float max_distance,
@@ -140,7 +155,7 @@ std::optional<RayHit> RayScene::Impl::intersect(const Vec3& origin, const Vec3& 
   rtcIntersect1(scene, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   RayHit hit;
-  hit.triangle = triangles[query.hit.geomID][query.hit.primID];
+  hit.triangle = triangle_of(query.hit.geomID, query.hit.primID);
   hit.barycentric = {query.hit.u, query.hit.v};
   hit.distance = query.ray.tfar;
   const Vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
@@ -153,17 +168,20 @@ RayScene::RayScene(const Scene& scene, const Geometry& geometry) : impl_(std::ma
   _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
   impl_->source = &scene;
   impl_->geometry = &geometry;
-  for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
-    const TriangleId t(i);
-    impl_->triangles[may_be_transparent(scene.materials[geometry.materials[t]])].push_back(t);
-  }
+  const auto transparent = [&](MaterialId m) { return may_be_transparent(scene.materials[m]); };
+  impl_->all_opaque =
+      !geometry.triangles.empty() &&
+      std::none_of(geometry.materials.begin(), geometry.materials.end(), transparent);
+  if (!impl_->all_opaque)
+    for (std::size_t i = 0; i < geometry.triangles.size(); ++i)
+      impl_->triangles[transparent(geometry.materials[TriangleId(i)])].push_back(TriangleId(i));
   impl_->device = rtcNewDevice((std::string("isa=") + kInstructionSet).c_str());
   impl_->check();
   impl_->scene = rtcNewScene(impl_->device);
   impl_->check();
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   for (unsigned which = 0; which < 2; ++which)
-    if (!impl_->triangles[which].empty()) impl_->attach(which);
+    if (!impl_->triangles[which].empty() || (which == 0 && impl_->all_opaque)) impl_->attach(which);
   rtcCommitScene(impl_->scene);
   impl_->check();
 
@@ -215,7 +233,7 @@ std::vector<TriangleId> RayScene::triangles_near(const Vec3& point, float radius
   rtcInitPointQueryContext(&context);
   const auto collect = [](RTCPointQueryFunctionArguments* args) {
     auto* to = static_cast<Found*>(args->userPtr);
-    to->triangles.push_back(to->impl->triangles[args->geomID][args->primID]);
+    to->triangles.push_back(to->impl->triangle_of(args->geomID, args->primID));
     return false;  // the radius stays as it is
   };
   rtcPointQuery(impl_->scene, &query, &context, collect, &found);

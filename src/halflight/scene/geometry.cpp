@@ -24,15 +24,14 @@ void append_instance(const Scene& scene, const PrimitiveInstance& what, const Ma
   placed.triangles.first = static_cast<std::uint32_t>(g.triangles.size());
   for (std::size_t i = 0; i < p.positions.size(); ++i) {
     g.positions.push_back(transform_point(world, p.positions[i]));
-    Vec3 n(0.f);
-    if (!p.normals.empty()) {
-      n = transform_vector(normal_matrix, p.normals[i]);
+    if (!g.normals.empty()) {
+      Vec3& n = g.normals[VertexId(placed.vertices.first + i)];
+      if (!p.normals.empty()) n = transform_vector(normal_matrix, p.normals[i]);
       const float length = glm::length(n);
       n = length > 0.f && std::isfinite(length) ? n / length : Vec3(0.f);
     }
-    g.normals.push_back(n);
-    for (int set = 0; set < 2; ++set)
-      g.uvs[set].push_back(p.uvs[set].empty() ? Vec2(0.f) : p.uvs[set][i]);
+    for (std::size_t set = 0; set < 2; ++set)
+      if (!p.uvs[set].empty()) g.uvs[set][VertexId(placed.vertices.first + i)] = p.uvs[set][i];
   }
   for (std::array<std::uint32_t, 3> corner : p.triangles) {
     if (mirrored) std::swap(corner[1], corner[2]);
@@ -55,6 +54,31 @@ void append_instance(const Scene& scene, const PrimitiveInstance& what, const Ma
   placed.vertices.last = static_cast<std::uint32_t>(g.positions.size());
   placed.triangles.last = static_cast<std::uint32_t>(g.triangles.size());
   g.primitive_instances.push_back(placed);
+}
+
+std::size_t copies_of(const Node& node) { return std::max<std::size_t>(1, node.instances.size()); }
+
+// For all that the nodes place, so that nothing has to grow.
+void make_room(const Scene& scene, Geometry& g) {
+  std::size_t vertices = 0, triangles = 0;
+  bool normals = false;
+  std::array<bool, 2> uvs{};
+  for (const Node& node : scene.nodes) {
+    if (!node.mesh.valid()) continue;
+    for (const Primitive& p : scene.meshes[node.mesh].primitives) {
+      vertices += copies_of(node) * p.positions.size();
+      triangles += copies_of(node) * p.triangles.size();
+      normals |= !p.normals.empty();
+      for (std::size_t set = 0; set < 2; ++set) uvs[set] |= !p.uvs[set].empty();
+    }
+  }
+  g.positions.reserve(vertices);
+  g.triangles.reserve(triangles);
+  g.materials.reserve(triangles);
+  g.instances.reserve(triangles);
+  if (normals) g.normals.resize(vertices, Vec3(0.f));
+  for (std::size_t set = 0; set < 2; ++set)
+    if (uvs[set]) g.uvs[set].resize(vertices, Vec2(0.f));
 }
 
 PunctualLight place(const Light& light, const Mat4& world) {
@@ -83,8 +107,8 @@ PlacedCamera place(const Camera& camera, const Mat4& world) {
   return placed;
 }
 
-Vec2 interpolate(const IdVector<VertexId, Vec2>& values, const std::array<VertexId, 3>& v, Vec2 b) {
-  return (1.f - b.x - b.y) * values[v[0]] + b.x * values[v[1]] + b.y * values[v[2]];
+Vec2 uv_at(const Geometry& g, std::size_t set, const std::array<VertexId, 3>& v, Vec2 b) {
+  return (1.f - b.x - b.y) * g.uv(set, v[0]) + b.x * g.uv(set, v[1]) + b.y * g.uv(set, v[2]);
 }
 
 int wrapped(int i, int size, Wrap wrap) {
@@ -134,13 +158,14 @@ Vec4 sample(const Scene& scene, const TextureRef& ref, Vec2 uv) {
 Vec4 sample(const Scene& scene, const Geometry& g, const TextureRef& ref, TriangleId t,
             Vec2 barycentric) {
   if (!ref.valid()) return Vec4(1.f);
-  return sample(scene, ref, interpolate(g.uvs[ref.uv_set], g.triangles[t], barycentric));
+  return sample(scene, ref, uv_at(g, ref.uv_set, g.triangles[t], barycentric));
 }
 
 }  // namespace
 
 Geometry flatten(const Scene& scene) {
   Geometry g;
+  make_room(scene, g);
   const IdVector<NodeId, Mat4> global = global_transforms(scene);
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
     const NodeId id(i);
@@ -155,8 +180,7 @@ Geometry flatten(const Scene& scene) {
       if (g.cameras.back().name.empty()) g.cameras.back().name = node.name;
     }
     if (!node.mesh.valid()) continue;
-    const std::size_t copies = std::max<std::size_t>(1, node.instances.size());
-    for (std::size_t copy = 0; copy < copies; ++copy) {
+    for (std::size_t copy = 0; copy < copies_of(node); ++copy) {
       const Mat4 placed = node.instances.empty() ? world : world * node.instances[copy];
       const std::size_t primitives = scene.meshes[node.mesh].primitives.size();
       for (std::size_t p = 0; p < primitives; ++p) {

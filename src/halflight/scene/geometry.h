@@ -49,7 +49,9 @@ struct PlacedCamera {
 
 struct Geometry {
   IdVector<VertexId, Vec3> positions;
-  IdVector<VertexId, Vec3> normals;  // shading normals, unit; zero where the file has none
+  // Shading normals, unit, zero where the file has none; and texture coordinates. Empty where no
+  // vertex of the file has any.
+  IdVector<VertexId, Vec3> normals;
   std::array<IdVector<VertexId, Vec2>, 2> uvs;
   IdVector<TriangleId, std::array<VertexId, 3>>
       triangles;  // non-degenerate, front counter-clockwise
@@ -61,6 +63,8 @@ struct Geometry {
   Bounds3f bounds;
   std::size_t degenerate_triangles = 0;  // left out: zero area, not finite, or beyond 1e9 m
 
+  Vec3 normal(VertexId v) const { return normals.empty() ? Vec3(0.f) : normals[v]; }
+  Vec2 uv(std::size_t set, VertexId v) const { return uvs[set].empty() ? Vec2(0.f) : uvs[set][v]; }
   std::array<Vec3, 3> corners(TriangleId t) const {
     const auto& v = triangles[t];
     return {positions[v[0]], positions[v[1]], positions[v[2]]};

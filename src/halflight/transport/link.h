@@ -69,8 +69,8 @@ class LinkTable {
 
  private:
   struct Row {
-    std::uint64_t first = 0;
-    std::uint32_t count = 0;
+    std::uint64_t first : 40 = 0;
+    std::uint64_t count : 24 = 0;
   };
   IdVector<ElementId, Row> rows_;
   std::vector<Link> links_;
