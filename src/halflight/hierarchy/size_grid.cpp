@@ -7,6 +7,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "halflight/base/parallel.h"
 #include "halflight/hierarchy/morton.h"
 
 namespace halflight {
@@ -14,12 +15,22 @@ namespace {
 
 constexpr int kFinestLevel = 20;
 constexpr std::size_t kChunk = 32;  // objects agglomerated at once
-constexpr float kPadding = 0.02f;   // of the voxel: flat boxes get a volume
+constexpr std::size_t kItemsAtOnce = 4096;
+constexpr float kPadding = 0.02f;  // of the voxel: flat boxes get a volume
 
 struct Item {
   Bounds3f box;
   std::uint32_t index = 0;  // of a surface or of a cluster
   bool is_cluster = false;
+};
+
+// Where clusters are made: the tree, or for some voxels of a level by themselves a part of what is
+// to be its end.
+struct Workplace {
+  std::vector<ClusterTree::Cluster>& clusters;
+  std::uint32_t first;        // number of clusters.front()
+  std::uint32_t level_first;  // of the clusters of this level, which may still take members
+  std::uint64_t steps = 0;    // pairs of boxes looked at
 };
 
 class Builder {
@@ -41,7 +52,8 @@ class Builder {
       promoted = group_level(level, std::move(items));
     }
     promoted.insert(promoted.end(), native[0].begin(), native[0].end());
-    tree_.root = make_cluster(promoted);
+    Workplace at = in_tree();
+    tree_.root = make_cluster(at, promoted);
     if (steps) *steps += steps_;
     return std::move(tree_);
   }
@@ -70,11 +82,15 @@ class Builder {
     const Vec3 e = box.extent() + Vec3(padding_);
     return e.x * e.y * e.z;
   }
-  float empty_share(const Bounds3f& a, const Bounds3f& b) {
-    ++steps_;
+  float empty_share(Workplace& at, const Bounds3f& a, const Bounds3f& b) const {
+    ++at.steps;
     Bounds3f both = a;
     both.extend(b);
     return std::max(0.f, 1.f - (padded_volume(a) + padded_volume(b)) / padded_volume(both));
+  }
+
+  Workplace in_tree() {
+    return {tree_.clusters, 0, static_cast<std::uint32_t>(tree_.clusters.size())};
   }
 
   // One grid of the stack: returns what is handed to the level above.
@@ -82,7 +98,7 @@ class Builder {
     if (items.empty()) return items;
     const float voxel = side_ / static_cast<float>(1u << level);
     padding_ = kPadding * voxel;
-    level_first_cluster_ = static_cast<std::uint32_t>(tree_.clusters.size());
+    Workplace at = in_tree();
 
     std::vector<Item> straddlers;
     std::vector<std::pair<std::uint64_t, std::uint32_t>> inside;  // voxel key, item
@@ -99,26 +115,72 @@ class Builder {
 
     std::vector<Item> result;
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> clusters_in_voxel;
-    for (std::size_t i = 0; i < inside.size();) {
-      const std::uint64_t key = inside[i].first;
-      std::vector<Item> held;
-      for (; i < inside.size() && inside[i].first == key; ++i)
-        held.push_back(items[inside[i].second]);
-      for (const Item& item : group_voxel(std::move(held), voxel)) {
-        if (options_.strict && item.is_cluster)
-          clusters_in_voxel[key].push_back(static_cast<std::uint32_t>(result.size()));
-        result.push_back(item);
-      }
+    for (const auto& [key, item] : group_voxels(items, inside, voxel)) {
+      if (options_.strict && item.is_cluster)
+        clusters_in_voxel[key].push_back(static_cast<std::uint32_t>(result.size()));
+      result.push_back(item);
     }
     for (const Item& straddler : straddlers)
-      if (!join_touched_cluster(straddler, level, clusters_in_voxel, result))
+      if (!join_touched_cluster(at, straddler, level, clusters_in_voxel, result))
         result.push_back(straddler);
+    steps_ += at.steps;
+    return result;
+  }
+
+  using Keyed = std::pair<std::uint64_t, std::uint32_t>;  // voxel key, item
+
+  // What comes of all voxels, in their order. Blocks of them make their clusters by themselves,
+  // numbered as if they were the first, and move up behind each other at the end.
+  std::vector<std::pair<std::uint64_t, Item>> group_voxels(const std::vector<Item>& items,
+                                                           const std::vector<Keyed>& inside,
+                                                           float voxel) {
+    std::vector<std::size_t> starts;  // of blocks, where a voxel begins
+    for (std::size_t i = 0; i < inside.size(); ++i)
+      if ((starts.empty() || i - starts.back() >= kItemsAtOnce) &&
+          (i == 0 || inside[i].first != inside[i - 1].first))
+        starts.push_back(i);
+    starts.push_back(inside.size());
+    struct Block {
+      std::vector<ClusterTree::Cluster> clusters;
+      std::vector<std::pair<std::uint64_t, Item>> result;
+      std::uint64_t steps = 0;
+    };
+    const auto first = static_cast<std::uint32_t>(tree_.clusters.size());
+    std::vector<Block> blocks(starts.size() - 1);
+    parallel_for(blocks.size(), 1, [&](std::size_t b) {
+      Workplace at{blocks[b].clusters, first, first};
+      for (std::size_t i = starts[b]; i < starts[b + 1];) {
+        const std::uint64_t key = inside[i].first;
+        std::vector<Item> held;
+        for (; i < starts[b + 1] && inside[i].first == key; ++i)
+          held.push_back(items[inside[i].second]);
+        for (const Item& item : group_voxel(at, std::move(held), voxel))
+          blocks[b].result.emplace_back(key, item);
+      }
+      blocks[b].steps = at.steps;
+    });
+    std::vector<std::pair<std::uint64_t, Item>> result;
+    for (Block& block : blocks) {
+      const auto by = static_cast<std::uint32_t>(tree_.clusters.size()) - first;
+      const auto move_up = [&](std::uint32_t& cluster) {
+        if (cluster >= first) cluster += by;
+      };
+      for (ClusterTree::Cluster& cluster : block.clusters) {
+        std::for_each(cluster.clusters.begin(), cluster.clusters.end(), move_up);
+        tree_.clusters.push_back(std::move(cluster));
+      }
+      for (auto& [key, item] : block.result) {
+        if (item.is_cluster) move_up(item.index);
+        result.emplace_back(key, item);
+      }
+      steps_ += block.steps;
+    }
     return result;
   }
 
   // Objects of one voxel: least empty space first; tiny ones join a cluster even if it is largely
   // empty.
-  std::vector<Item> group_voxel(std::vector<Item> held, float voxel) {
+  std::vector<Item> group_voxel(Workplace& at, std::vector<Item> held, float voxel) const {
     const auto tiny_begin = std::stable_partition(held.begin(), held.end(), [&](const Item& item) {
       return item.box.longest_side() >= options_.tiny_share * voxel;
     });
@@ -129,21 +191,22 @@ class Builder {
     std::vector<Item> result;
     for (std::size_t first = 0; first < held.size(); first += kChunk) {
       const std::size_t last = std::min(held.size(), first + kChunk);
-      agglomerate({held.begin() + static_cast<std::ptrdiff_t>(first),
+      agglomerate(at,
+                  {held.begin() + static_cast<std::ptrdiff_t>(first),
                    held.begin() + static_cast<std::ptrdiff_t>(last)},
                   result);
     }
-    place_tiny(tiny, result);
+    place_tiny(at, tiny, result);
     return result;
   }
 
-  void place_tiny(const std::vector<Item>& tiny, std::vector<Item>& result) {
+  void place_tiny(Workplace& work, const std::vector<Item>& tiny, std::vector<Item>& result) const {
     std::vector<std::uint32_t> hosts;
     for (std::uint32_t i = 0; i < result.size(); ++i)
       if (result[i].is_cluster) hosts.push_back(i);
     if (hosts.empty()) {
       if (tiny.size() == 1) result.push_back(tiny.front());
-      if (tiny.size() > 1) result.push_back(cluster_item(tiny));
+      if (tiny.size() > 1) result.push_back(cluster_item(work, tiny));
       return;
     }
     // In a crowd only hosts near along the curve are looked at.
@@ -164,7 +227,7 @@ class Builder {
       std::uint32_t best = hosts[first];
       float least = kInfinity;
       for (std::size_t i = first; i < last; ++i) {
-        ++steps_;
+        ++work.steps;
         Bounds3f both = result[hosts[i]].box;
         both.extend(item.box);
         const float growth = padded_volume(both) - padded_volume(result[hosts[i]].box);
@@ -177,12 +240,12 @@ class Builder {
     for (const auto& [host, joined] : guests) {
       std::vector<Item> members{result[host]};
       members.insert(members.end(), joined.begin(), joined.end());
-      result[host] = cluster_item(members);
+      result[host] = cluster_item(work, members);
     }
   }
 
   // Repeatedly merges the pair with the least empty share until none is below the limit.
-  void agglomerate(std::vector<Item> items, std::vector<Item>& result) {
+  void agglomerate(Workplace& at, std::vector<Item> items, std::vector<Item>& result) const {
     struct Best {
       float share = kInfinity;
       std::size_t partner = 0;
@@ -192,7 +255,7 @@ class Builder {
       best[i] = {};
       for (std::size_t j = 0; j < items.size(); ++j) {
         if (j == i) continue;
-        const float e = empty_share(items[i].box, items[j].box);
+        const float e = empty_share(at, items[i].box, items[j].box);
         if (e < best[i].share) best[i] = {e, j};
       }
     };
@@ -204,7 +267,7 @@ class Builder {
       if (best[a].share > options_.largest_empty_share) break;
       std::size_t b = best[a].partner;
       if (b < a) std::swap(a, b);
-      items[a] = merge(items[a], items[b]);
+      items[a] = merge(at, items[a], items[b]);
       const std::size_t moved = items.size() - 1;
       items[b] = items[moved];
       best[b] = best[moved];
@@ -214,7 +277,7 @@ class Builder {
         const std::size_t partner = best[i].partner;
         if (i == a || partner == a || partner == b || partner == moved)
           search(i);
-        else if (const float e = empty_share(items[i].box, items[a].box); e < best[i].share)
+        else if (const float e = empty_share(at, items[i].box, items[a].box); e < best[i].share)
           best[i] = {e, a};
       }
     }
@@ -222,10 +285,10 @@ class Builder {
   }
 
   // Joins a cluster of this level while its fan-out allows, else makes a binary cluster.
-  Item merge(const Item& a, const Item& b) {
+  Item merge(Workplace& at, const Item& a, const Item& b) const {
     for (const auto& [host, guest] : {std::pair(a, b), std::pair(b, a)}) {
-      if (!host.is_cluster || host.index < level_first_cluster_) continue;
-      ClusterTree::Cluster& cluster = tree_.clusters[host.index];
+      if (!host.is_cluster || host.index < at.level_first) continue;
+      ClusterTree::Cluster& cluster = at.clusters[host.index - at.first];
       if (cluster.clusters.size() + cluster.surfaces.size() >=
           static_cast<std::size_t>(options_.largest_fan_out))
         continue;
@@ -234,11 +297,11 @@ class Builder {
       grown.box.extend(guest.box);
       return grown;
     }
-    return cluster_item({a, b});
+    return cluster_item(at, {a, b});
   }
 
   bool join_touched_cluster(
-      const Item& straddler, int level,
+      Workplace& at, const Item& straddler, int level,
       const std::unordered_map<std::uint64_t, std::vector<std::uint32_t>>& clusters_in_voxel,
       std::vector<Item>& result) {
     const auto low = voxel_of(straddler.box.lower, level),
@@ -251,13 +314,13 @@ class Builder {
           const auto found = clusters_in_voxel.find(key_of({x, y, z}));
           if (found == clusters_in_voxel.end()) continue;
           for (const std::uint32_t i : found->second)
-            if (const float e = empty_share(result[i].box, straddler.box); e < least) {
+            if (const float e = empty_share(at, result[i].box, straddler.box); e < least) {
               least = e;
               host = &result[i];
             }
         }
     if (!host) return false;
-    *host = merge(*host, straddler);
+    *host = merge(at, *host, straddler);
     return true;
   }
 
@@ -281,16 +344,16 @@ class Builder {
       cluster.surfaces.push_back(SurfaceId(item.index));
   }
 
-  Item cluster_item(const std::vector<Item>& members) {
+  Item cluster_item(Workplace& at, const std::vector<Item>& members) const {
     Item item;
     for (const Item& member : members) item.box.extend(member.box);
-    item.index = make_cluster(members);
+    item.index = make_cluster(at, members);
     item.is_cluster = true;
     return item;
   }
 
   // A cluster of any number of members: more than the fan-out are first grouped in Morton order.
-  std::uint32_t make_cluster(std::vector<Item> members) {
+  std::uint32_t make_cluster(Workplace& at, std::vector<Item> members) const {
     const auto fan_out = static_cast<std::size_t>(options_.largest_fan_out);
     if (members.size() > fan_out) {
       sort_by_morton(members);
@@ -301,15 +364,15 @@ class Builder {
         if (last - first == 1)
           groups.push_back(members[first]);
         else
-          groups.push_back(cluster_item({members.begin() + static_cast<std::ptrdiff_t>(first),
-                                         members.begin() + static_cast<std::ptrdiff_t>(last)}));
+          groups.push_back(cluster_item(at, {members.begin() + static_cast<std::ptrdiff_t>(first),
+                                             members.begin() + static_cast<std::ptrdiff_t>(last)}));
       }
       members = std::move(groups);
     }
     ClusterTree::Cluster cluster;
     for (const Item& member : members) add_member(cluster, member);
-    tree_.clusters.push_back(std::move(cluster));
-    return static_cast<std::uint32_t>(tree_.clusters.size() - 1);
+    at.clusters.push_back(std::move(cluster));
+    return at.first + static_cast<std::uint32_t>(at.clusters.size() - 1);
   }
 
   std::span<const Bounds3f> boxes_;
@@ -317,7 +380,6 @@ class Builder {
   Bounds3f scene_;
   float side_ = 1.f;
   float padding_ = 0.f;
-  std::uint32_t level_first_cluster_ = 0;
   std::uint64_t steps_ = 0;  // pairs of boxes looked at
   ClusterTree tree_;
 };
