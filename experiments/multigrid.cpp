@@ -90,7 +90,7 @@ MultigridRun run_multigrid(int polygons, double wanted_seconds, int most_iterati
   const auto world = make_world(loose_triangles_scene(p));
   run.world_seconds = seconds_since(start);
   start = std::chrono::steady_clock::now();
-  SolverState state = make_state(world, SolveOptions{});
+  SolverState state = make_state(world, SolveOptions{}, Beginning::coarse);
   for (int i = 0; i < most_iterations && !state.done() && !progress.cancelled(); ++i) {
     advance(state, progress, {.seconds = wanted_seconds});
     if (i == 0) run.first_seconds = seconds_since(start);

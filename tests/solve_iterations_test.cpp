@@ -8,6 +8,7 @@
 #include "halflight/rays/path_tracer.h"
 #include "halflight/scene/procedural/doorway.h"
 #include "halflight/scene/procedural/loose_triangles.h"
+#include "halflight/solve/sweep.h"
 #include "sanitized.h"
 #include "solved_scene.h"
 
@@ -196,6 +197,54 @@ TEST(EstimatedError, FallsWhenASmallerOneIsAimedAt) {
   EXPECT_LT(error_by_paths(state), before);
   const EnergyBalance balance = energy_balance(state);
   EXPECT_NEAR(average(balance.absorbed) / average(balance.emitted), 1.f, 0.02f);
+}
+
+// Clutter of more receivers than the first coarse solution has.
+std::shared_ptr<const World> cluttered_room() {
+  return make_world(loose_triangles_scene({.count = 20'000, .size = 0.05f}));
+}
+constexpr float kFeatureOfClutter = 0.1f;
+
+TEST(CoarseBeginning, FirstIterationLightsAllHoweverShort) {
+  SolverState state =
+      make_state(cluttered_room(), {.feature_size = kFeatureOfClutter}, Beginning::coarse);
+  advance(state, Progress(), {.links = 1});
+  EXPECT_TRUE(state.schedule.receivers.empty());
+  EXPECT_GT(state.schedule.receiver_scale, 1.f);
+  EXPECT_LT(state.history.front().refined, 8'000u);
+  const float first = mean_irradiance(state);
+  while (!state.done()) advance(state, Progress());
+  EXPECT_NEAR(first, mean_irradiance(state), 0.2f * mean_irradiance(state));
+}
+
+TEST(CoarseBeginning, EndsWhereADirectSolveDoes) {
+  const auto world = cluttered_room();
+  const SolveOptions options{.feature_size = kFeatureOfClutter};
+  const auto solve = [&](Beginning beginning) {
+    SolverState state = make_state(world, options, beginning);
+    while (!state.done()) advance(state, Progress());
+    return state;
+  };
+  const SolverState coarsely = solve(Beginning::coarse), direct = solve(Beginning::as_asked);
+  EXPECT_TRUE(coarsely.fine_parts_made);
+  EXPECT_EQ(coarsely.schedule.receiver_scale, 1.f);
+  const auto points = scatter_points(direct, 400);
+  EXPECT_LT(relative_rms(testing::read_irradiance(coarsely, points, kMeshReading),
+                         testing::read_irradiance(direct, points, kMeshReading)),
+            0.04f);  // two solutions of 2 % each
+}
+
+// What is found anew for the receivers of an iteration is what is found anew for all.
+TEST(CoarseBeginning, RowLimitsOfSomeAreThoseOfAll) {
+  SolverState state =
+      make_state(cluttered_room(), {.feature_size = kFeatureOfClutter}, Beginning::coarse);
+  while (state.schedule.round < 2 || state.schedule.receivers.empty())
+    advance(state, Progress(), {.links = 20'000});
+  advance(state, Progress(), {.links = 20'000});
+  SolverState anew = state;
+  anew.row_limits.clear();
+  sweep(anew, 1);
+  EXPECT_EQ(anew.row_limits.raw(), state.row_limits.raw());
 }
 
 }  // namespace

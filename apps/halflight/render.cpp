@@ -66,12 +66,13 @@ Result<SolverState> solve(const RenderArguments& arguments,
   Result<SolvePlan> plan = resolve(arguments.solve);
   if (!plan) return tl::unexpected(plan.error());
   if (auto ok = complete(*plan, arguments.solve, *world); !ok) return tl::unexpected(ok.error());
-  Result<SolverState> begun = begin_solve(world, plan->options);
-  if (!begun) return begun;
-  SolverState& state = *begun;
   // A deadline ends the refinement and not the picture.
   Progress solving(progress_listener(arguments.solve));
   const Deadline deadline(solving, arguments.solve, Deadline::Clock::now());
+  Result<SolverState> begun =
+      begin_solve(world, plan->options, beginning_of(plan->options, deadline));
+  if (!begun) return begun;
+  SolverState& state = *begun;
   run_to_goal(state, plan->goals, deadline, solving, false);
   if (state.options.memory > 0) drop_links(state);
   return begun;

@@ -80,9 +80,9 @@ Result<void> check_file_size(const std::filesystem::path& path, std::size_t memo
 
 // The state to begin with: fresh, or that of the checkpoint.
 Result<SolverState> begin(const Outputs& outputs, const std::shared_ptr<const World>& world,
-                          const SolveOrigin& origin) {
+                          const SolveOrigin& origin, Beginning beginning) {
   const auto fresh = [&]() -> Result<SolverState> {
-    auto state = begin_solve(world, origin.options,
+    auto state = begin_solve(world, origin.options, beginning,
                              least_memory(outputs.lit, most_vertices_of_input(*world)));
     if (!state || !outputs.groups) return state;
     auto groups = find_light_groups(world->scene, *outputs.groups);
@@ -167,7 +167,8 @@ Result<int> run(const SolveCommand& command) {
   phase = std::chrono::steady_clock::now();
   SolveOrigin origin{source_of(command.scene), 0, resolved(plan->options, *world)};
   if (!command.outputs.checkpoint.empty()) origin.scene_digest = digest_of(world->scene);
-  Result<SolverState> begun = begin(command.outputs, world, origin);
+  Result<SolverState> begun =
+      begin(command.outputs, world, origin, beginning_of(origin.options, deadline));
   if (!begun) return tl::unexpected(begun.error());
   SolverState& state = *begun;
   report.end_phase("hierarchy", phase);

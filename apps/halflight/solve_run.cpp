@@ -55,9 +55,14 @@ bool meets(const SolveGoals& goals, const SolverState& state, const EstimatedErr
 
 }  // namespace
 
+Beginning beginning_of(const SolveOptions& options, const Deadline& deadline) {
+  return deadline.set() && options.memory == 0 ? Beginning::coarse : Beginning::as_asked;
+}
+
 Result<SolverState> begin_solve(const std::shared_ptr<const World>& world,
-                                const SolveOptions& options, std::size_t for_outputs) {
-  if (options.memory == 0) return make_state(world, options);
+                                const SolveOptions& options, Beginning beginning,
+                                std::size_t for_outputs) {
+  if (options.memory == 0) return make_state(world, options, beginning);
   const auto check = [&](std::size_t bytes, const char* of) -> Result<void> {
     if (bytes <= options.memory) return {};
     return input_error(
@@ -83,10 +88,6 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
                          const Progress& progress, bool wants_error,
                          const std::function<void(const SolverState&)>& after_iteration) {
   SolveOutcome outcome;
-  // Whenever the time is over, all of the light shall be there. Rounds that memory cuts short are
-  // never made finer.
-  const bool coarsely_first = deadline.set() && state.options.memory == 0;
-  if (coarsely_first && state.history.empty()) begin_coarsely(state);
   const auto run = [&] {
     return run_schedule(state, goals, deadline, progress, after_iteration) &&
            state.schedule.short_of_memory == 0;
@@ -103,8 +104,8 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
   }
   if (!goals.error) return outcome;
   // A solve that was resumed has some of its rounds behind it.
-  const int coarse_rounds = coarsely_first ? 1 : 0;
-  for (int round = std::max<int>(1, state.schedule.round - coarse_rounds);
+  const bool had_coarse_rounds = beginning_of(state.options, deadline) == Beginning::coarse;
+  for (int round = had_coarse_rounds ? 1 : std::max<int>(1, state.schedule.round);
        outcome.goal_met && outcome.error->relative_rms > *goals.error; ++round) {
     if (round == kMostRounds) {
       outcome.goal_met = false;

@@ -15,10 +15,15 @@ struct SolveOutcome {
   std::optional<EstimatedError> error;
 };
 
+// Whenever a deadline comes, all of the light shall be there. Rounds that memory cuts short are
+// never made finer.
+Beginning beginning_of(const SolveOptions& options, const Deadline& deadline);
+
 // A fresh state; an error where a limit on memory leaves no room for the scene, its hierarchy and
 // `for_outputs`, bytes that writing takes after the links are gone.
 Result<SolverState> begin_solve(const std::shared_ptr<const World>& world,
-                                const SolveOptions& options, std::size_t for_outputs = 0);
+                                const SolveOptions& options, Beginning beginning,
+                                std::size_t for_outputs = 0);
 
 // `after_iteration` is called with a valid state. The error is measured when it is a goal, or when
 // `wants_error`. Light that has been taken apart into its groups is done: it is only measured.

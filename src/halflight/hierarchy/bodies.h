@@ -16,8 +16,8 @@ using BodyId = Id<struct BodyTag>;
 struct Bodies {
   IdVector<TriangleId, BodyId> of_triangle;
   IdVector<BodyId, std::uint8_t> closed;  // every edge joins two triangles, consistently wound
-  std::vector<std::uint32_t> first;   // of each body into `triangles`; one more than bodies
-  std::vector<TriangleId> triangles;  // grouped by body
+  std::vector<std::uint32_t> first;       // of each body into `triangles`; one more than bodies
+  std::vector<TriangleId> triangles;      // grouped by body
 
   std::size_t size() const { return closed.size(); }
   std::span<const TriangleId> members(BodyId id) const {

@@ -45,7 +45,8 @@ Buckets spread_over_buckets(std::span<const std::uint64_t> keys) {
     starts[b] = {};
     for_block(b, [&](std::size_t i) { ++starts[b][bucket_of(i)]; });
   });
-  Buckets buckets{std::vector<std::uint32_t>(kBuckets + 1), std::vector<std::uint32_t>(keys.size())};
+  Buckets buckets{std::vector<std::uint32_t>(kBuckets + 1),
+                  std::vector<std::uint32_t>(keys.size())};
   std::uint32_t end = 0;
   for (std::size_t k = 0; k < kBuckets; ++k) {
     buckets.first[k] = end;

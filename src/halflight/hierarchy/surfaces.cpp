@@ -120,8 +120,8 @@ bool may_be_joined(const Geometry& g, TriangleId t, const std::array<TriangleId,
   return std::any_of(neighbours.begin(), neighbours.end(), [&](TriangleId other) {
     if (!other.valid() || g.materials[other] != g.materials[t]) return false;
     const Vec3 m = g.scaled_normal(other);
-    return glm::dot(n, m) > 0.f && glm::length(glm::cross(n, m)) <=
-                                       3.f * kSameNormal * glm::length(n) * glm::length(m);
+    return glm::dot(n, m) > 0.f &&
+           glm::length(glm::cross(n, m)) <= 3.f * kSameNormal * glm::length(n) * glm::length(m);
   });
 }
 

@@ -24,6 +24,13 @@ constexpr double kBright = 3.0;                 // in mean irradiances
 constexpr float kErrorOfAllShadowRays = 0.05f;  // larger ones take fewer, in proportion
 constexpr int kFewestShadowRays = 2;
 
+// Smaller errors take more rays for each receiver, in proportion; larger ones fewer.
+constexpr float kErrorOfPlainSampling = 0.05f;
+constexpr float kLeastSampling = 0.125f, kMostSampling = 8.f;
+// SampledLinkOptions::area_of_all_rays of the scene's.
+constexpr float kAreaOfAllRays = 1.f / 4096.f;
+constexpr float kLargestReceiver = 1.f / 16.f;  // of the scene's diagonal
+
 constexpr float kFinestCell = 1e-3f;  // of the scene's diagonal, whatever the feature size
 
 // Streams of samples: to decide with, and to keep.
@@ -45,13 +52,6 @@ bool is_buried(const SolverState& state, const Vec3& x, const Vec3& n, std::uint
 double received_power(const SolverState& state, ElementId cell) {
   return static_cast<double>(state.tree[cell].area) *
          static_cast<double>(average(state.irradiance[cell]));
-}
-
-double received_power(const SolverState& state) {
-  return parallel_sum(state.tree.size(), 4096, 0.0, [&](std::size_t i) {
-    const ElementId e(i);
-    return state.tree[e].is_leaf_cell() ? received_power(state, e) : 0.0;
-  });
 }
 
 // By what has been known before, so that the number has nothing to do with what is found.
@@ -116,6 +116,13 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uin
 
 }  // namespace
 
+double received_power(const SolverState& state) {
+  return parallel_sum(state.tree.size(), 4096, 0.0, [&](std::size_t i) {
+    const ElementId e(i);
+    return state.tree[e].is_leaf_cell() ? received_power(state, e) : 0.0;
+  });
+}
+
 float finest_cell(const SolverState& state) {
   return kFinestCell * state.world->geometry.bounds.diagonal();
 }
@@ -135,13 +142,17 @@ void evaluate_material(SolverState& state, ElementId cell) {
   const std::uint32_t samples = textured ? kTextureSamples : 1;
   float opacities = 0.f;
   Rgb reflectance(0.f), emission(0.f);
-  for (std::uint32_t k = 0; k < samples; ++k) {
-    const CellPoint p = tree.sample(cell, r2_sequence(k));
-    const Vec2 b = g.barycentric(p.triangle, p.position);
-    const float opacity = opacity_at(scene, g, p.triangle, b);
-    reflectance += opacity * reflectance_at(scene, g, p.triangle, b);
-    emission += opacity * emission_at(scene, g, p.triangle, b);
+  const auto add = [&](TriangleId t, Vec2 b) {
+    const float opacity = opacity_at(scene, g, t, b);
+    reflectance += opacity * reflectance_at(scene, g, t, b);
+    emission += opacity * emission_at(scene, g, t, b);
     opacities += opacity;
+  };
+  const Surface& surface = tree.surfaces()[side];
+  if (!textured) add(tree.surfaces().triangles[surface.first_triangle], Vec2(0.f));
+  for (std::uint32_t k = 0; textured && k < samples; ++k) {
+    const CellPoint p = tree.sample(cell, r2_sequence(k));
+    add(p.triangle, g.barycentric(p.triangle, p.position));
   }
   const float weight = 1.f / static_cast<float>(samples);
   state.opacity[cell] = weight * opacities;
@@ -163,6 +174,7 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   state.sampled.resize(n, 0);
   state.feature_sizes.resize(n);
   if (!state.importance.empty()) state.importance.resize(n);
+  if (!state.row_limits.empty()) state.row_limits.resize(n);
   parallel_for(split_cells.size(), 64, [&](std::size_t i) {
     const ElementId parent = split_cells[i];
     for (const ElementId child : state.tree[parent].children()) {
@@ -177,6 +189,7 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
       state.sampled[child] = state.sampled[parent];
       state.feature_sizes[child] = state.feature_size_rules->of_cell(state.tree[child]);
       if (!state.importance.empty()) state.importance[child] = state.importance[parent];
+      if (!state.row_limits.empty()) state.row_limits[child] = state.row_limits[parent];
       state.radiosity[child] =
           state.exitance[child] + state.reflectance[child] * state.irradiance[child];
     }
@@ -202,16 +215,53 @@ void give_light_to_side(SolverState& state, ElementId side, const Rgb& of_emitte
 
 }  // namespace
 
+std::vector<ElementId> receivers_of(const SolverState& state, std::vector<ElementId> below) {
+  const float scale = state.schedule.receiver_scale;
+  return cut_into_receivers(state.tree, std::move(below), [&](ElementId cluster) {
+    // One light for all is no good near an emitter.
+    const bool emits = max_component(state.exitance[cluster]) > 0.f;
+    return state.tree[cluster].diameter() <= (emits ? 1.f : scale) * state.feature_sizes[cluster];
+  });
+}
+
+void limit_receivers(SolverState& state, std::size_t most) {
+  const ElementId root = state.tree.root();
+  float& scale = state.schedule.receiver_scale;
+  scale = 1.f;
+  if (!(state.feature_sizes[root] > 0.f)) return;
+  while (scale * state.feature_sizes[root] < kLargestReceiver * state.tree[root].diameter())
+    scale *= 2.f;
+  while (scale > 1.f) {
+    scale *= 0.5f;
+    if (receivers_of(state, {root}).size() <= most) continue;
+    scale *= 2.f;
+    return;
+  }
+}
+
+SampledLinkOptions sampled_link_options(const SolverState& state) {
+  SampledLinkOptions options;
+  options.inside = state.inside.get();
+  const float more =
+      std::clamp(kErrorOfPlainSampling / aimed_error(state), kLeastSampling, kMostSampling);
+  options.rays_per_cell = static_cast<int>(more * static_cast<float>(options.rays_per_cell));
+  options.rays_per_cluster = static_cast<int>(more * static_cast<float>(options.rays_per_cluster));
+  options.shadow_rays_per_cluster =
+      static_cast<int>(std::min(1.f, more) * static_cast<float>(options.shadow_rays_per_cluster));
+  options.area_of_all_rays = kAreaOfAllRays * state.tree[state.tree.root()].area;
+  return options;
+}
+
 void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& receivers) {
   const ClusterVisibility* inside = state.inside.get();
+  const SampledLinkOptions options_of_all = sampled_link_options(state);
   parallel_for(receivers.size(), 16, [&](std::size_t i) {
     const ElementTree& tree = state.tree;
     const ElementId receiver = receivers[i];
     if (!tree[receiver].is_cluster()) return;
     // Too near for one light on all: its cells are lit one by one.
     if (max_component(state.exitance[receiver]) > 0.f) return;
-    SampledLinkOptions options;
-    options.inside = inside;
+    SampledLinkOptions options = options_of_all;
     options.feature_size = state.feature_sizes[receiver];
     const DirectLight light =
         sample_direct_light(tree, *state.visibility, *state.emitters, receiver, options);
@@ -239,15 +289,19 @@ void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& re
   });
 }
 
-void update_given_light(SolverState& state, float irradiance_threshold) {
-  if (!has_outer_light(*state.world) && !state.emitters) return;
-  std::vector<ElementId> open;
-  for (std::size_t i = 0; i < state.tree.size(); ++i) {
-    const ElementId e(i);
-    if (state.tree[e].is_leaf_cell() && !state.given_light_known[e]) open.push_back(e);
-  }
+namespace {
+
+bool wants_given_light(const SolverState& state) {
+  return has_outer_light(*state.world) || state.emitters;
+}
+
+bool lacks_given_light(const SolverState& state, ElementId e) {
+  return state.tree[e].is_leaf_cell() && !state.given_light_known[e];
+}
+
+void give_light_to_cells(SolverState& state, std::vector<ElementId> open,
+                         float irradiance_threshold, double total_power) {
   const float scene_area = state.tree[state.tree.root()].area;
-  const double total_power = received_power(state);
   bool may_split = true;
   while (!open.empty()) {
     std::vector<std::uint8_t> uneven(open.size());
@@ -283,6 +337,38 @@ void update_given_light(SolverState& state, float irradiance_threshold) {
     }
     inherit(state, split);
   }
+}
+
+}  // namespace
+
+void update_given_light(SolverState& state, float irradiance_threshold) {
+  if (!wants_given_light(state)) return;
+  give_light_to_cells(state,
+                      parallel_collect<ElementId>(state.tree.size(), 1 << 14,
+                                                  [&](std::size_t i, std::vector<ElementId>& open) {
+                                                    if (lacks_given_light(state, ElementId(i)))
+                                                      open.emplace_back(i);
+                                                  }),
+                      irradiance_threshold, received_power(state));
+}
+
+void update_given_light(SolverState& state, float irradiance_threshold,
+                        const std::vector<ElementId>& receivers, double total_power) {
+  if (!wants_given_light(state)) return;
+  give_light_to_cells(
+      state,
+      parallel_collect<ElementId>(receivers.size(), 64,
+                                  [&](std::size_t i, std::vector<ElementId>& open) {
+                                    std::vector<ElementId> below{receivers[i]};
+                                    while (!below.empty()) {
+                                      const ElementId e = below.back();
+                                      below.pop_back();
+                                      if (lacks_given_light(state, e)) open.push_back(e);
+                                      for (const ElementId child : state.tree[e].children())
+                                        below.push_back(child);
+                                    }
+                                  }),
+      irradiance_threshold, total_power);
 }
 
 }  // namespace halflight

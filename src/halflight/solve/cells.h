@@ -20,12 +20,27 @@ void evaluate_material(SolverState& state, ElementId cell);
 // Gives new children the light of their split parent and their own material.
 void inherit(SolverState& state, const std::vector<ElementId>& split_cells);
 
+// The cut below some elements that receives sampled links in this round.
+std::vector<ElementId> receivers_of(const SolverState& state, std::vector<ElementId> below);
+// Before a round: sets the size of clusters that receive as one to the least, in feature sizes,
+// with which about so many elements receive, and at least 1.
+void limit_receivers(SolverState& state, std::size_t most);
+
+// How receivers look around in this round.
+SampledLinkOptions sampled_link_options(const SolverState& state);
+
 // Evaluates the light that sampled links do not carry on the cells of receiving clusters, by one
 // directional irradiance for each cluster. Clusters that hold emitters are left out.
 void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& receivers);
 
+// Power that all leaf cells receive, W.
+double received_power(const SolverState& state);
+
 // Evaluates the light that links do not carry on all leaf cells where it is not known yet, and
 // splits cells on which it varies by more than the threshold (as in RefineOptions).
 void update_given_light(SolverState& state, float irradiance_threshold);
+// The same on the leaf cells below these receivers, with the power received by all.
+void update_given_light(SolverState& state, float irradiance_threshold,
+                        const std::vector<ElementId>& receivers, double total_power);
 
 }  // namespace halflight

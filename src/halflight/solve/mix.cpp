@@ -42,8 +42,7 @@ GroupLight light_of_one(SolverState& state) {
   state.irradiance = IdVector<ElementId, Rgb>(n, Rgb(0.f));
   pull(state);  // exitance of clusters
   if (state.emitters) {
-    std::vector<ElementId> receivers =
-        choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes);
+    std::vector<ElementId> receivers = receivers_of(state, {state.tree.root()});
     std::erase_if(receivers, [&](ElementId e) { return state.sampled[e] == 0; });
     give_light_to_clusters(state, receivers);
   }

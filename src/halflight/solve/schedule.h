@@ -29,6 +29,7 @@ struct Schedule {
   std::size_t receiver_total = 0;      // of which they are left
   std::uint8_t round = 0;              // of sampled links, from 1
   float coarseness = 1.f;              // of the error aimed at, in those asked for
+  float receiver_scale = 1.f;          // of clusters that receive as one, in feature sizes
   std::uint8_t short_of_memory = 0;    // 1: something was made coarser for lack of it
 };
 

@@ -29,16 +29,17 @@ constexpr float kThresholdRatio = 4.f;  // between levels
 constexpr float kFeatureRatio = 2.f;    // of feature sizes
 // Of the first iteration to the first level, when iterations are to be short.
 constexpr float kFirstThreshold = 16.f;
-constexpr float kFirstError = 1.f;      // that a coarse beginning aims at
+constexpr float kFirstError = 1.f;  // that a coarse beginning aims at
+// Elements that receive in the first coarse solution, and by what there are more in the next.
+constexpr std::size_t kCellsOfFirstGuess = 512;
+constexpr std::size_t kFirstReceivers = 4096, kMoreReceivers = 8;
+constexpr int kCoarseRounds = 3;        // at most
 constexpr double kShareOfCoarse = 0.1;  // of the work, roughly
 constexpr float kBlindCells = 8.f;      // RefineOptions::largest_blind_cell in feature sizes
 constexpr float kLeastTolerance = 0.15f;
-// Smaller errors take more rays for each receiver, in proportion; larger ones fewer.
-constexpr float kErrorOfPlainSampling = 0.05f;
-constexpr float kLeastSampling = 0.125f, kMostSampling = 8.f;
-// SampledLinkOptions::area_of_all_rays of the scene's.
-constexpr float kAreaOfAllRays = 1.f / 4096.f;
 constexpr int kSweepsOfShortIteration = 2;
+constexpr double kLittleChangeOfCoarse = 0.02;
+constexpr double kFinePartsOfElement = 3e-6;  // seconds, before it is known
 constexpr int kFirstGuessOfSweeps = 10;
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 constexpr float kFewestRays = 6.f;  // of a cell; its refined links serve better
@@ -51,7 +52,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 std::shared_ptr<const Visibility> choose_visibility(const std::shared_ptr<const World>& world,
                                                     const Surfaces& surfaces,
-                                                    const ClusterTree& clusters,
+                                                    const ClusterTree* clusters,
                                                     const SolveOptions& options) {
   const float s = options.feature_size;
   const bool exact = options.visibility == VisibilityMode::exact || !(s > 0.f) ||
@@ -61,20 +62,24 @@ std::shared_ptr<const Visibility> choose_visibility(const std::shared_ptr<const 
   // Average visibility is the hierarchy's own; multi-resolution rays may group surfaces as they
   // like.
   if (options.visibility == VisibilityMode::average)
-    return std::make_shared<Visibility>(*world, surfaces, clusters, options.visibility);
+    return std::make_shared<Visibility>(*world, surfaces, *clusters, options.visibility);
   return std::make_shared<Visibility>(*world, surfaces, one_cluster(surfaces), options.visibility);
 }
 
 // Before any light has arrived: the emitted power spread over all that it could fall on.
 float first_guess_of_irradiance(const SolverState& state) {
-  double power = 0.0;
+  double emitted = 0.0, given = 0.0, known = 0.0;
   for (std::size_t i = 0; i < state.tree.size(); ++i) {
     const ElementId e(i);
-    if (state.tree[e].is_leaf_cell())
-      power += static_cast<double>(state.tree[e].area *
-                                   average(state.exitance[e] + state.given_light[e]));
+    if (!state.tree[e].is_leaf_cell()) continue;
+    const auto area = static_cast<double>(state.tree[e].area);
+    emitted += area * static_cast<double>(average(state.exitance[e]));
+    if (!state.given_light_known[e]) continue;
+    known += area;
+    given += area * static_cast<double>(average(state.given_light[e]));
   }
-  return static_cast<float>(power) / std::max(state.tree[state.tree.root()].area, 1e-30f);
+  const auto all = static_cast<double>(std::max(state.tree[state.tree.root()].area, 1e-30f));
+  return static_cast<float>(emitted / all + (known > 0.0 ? given / known : 0.0));
 }
 
 // Errors count by the scene's mean irradiance, and a little by the receiver's own: an error that
@@ -115,11 +120,25 @@ int levels_left(const SolverState& state) {
   return std::max(0, state.options.levels - 1 - state.schedule.level);
 }
 
+// Light that no link brings, before the first one: on all leaf cells, or only on some of them where
+// sampling begins at once.
+void begin_given_light(SolverState& state) {
+  if (state.schedule.stage != Stage::sample) return update_given_light(state, kInfinity);
+  std::vector<ElementId> some;
+  for (std::size_t k = 0; k < kCellsOfFirstGuess; ++k) {
+    const ElementId e(hash(k) % state.tree.size());
+    if (state.tree[e].is_leaf_cell()) some.push_back(e);
+  }
+  std::sort(some.begin(), some.end());
+  some.erase(std::unique(some.begin(), some.end()), some.end());
+  update_given_light(state, kInfinity, some, 0.0);
+}
+
 // Threshold and tolerances of the level that comes next, by the light that is there now.
 void begin_level(SolverState& state) {
   float mean = 0.f;
   if (state.history.empty()) {
-    update_given_light(state, kInfinity);
+    begin_given_light(state);
     mean = first_guess_of_irradiance(state);
     pull(state);
   } else {
@@ -271,29 +290,29 @@ void shape_elements(SolverState& state, std::size_t k, const Progress& progress,
   if (todo.pairs.empty()) todo.stage = Stage::sample;
 }
 
-SampledLinkOptions sampled_link_options(const SolverState& state) {
-  SampledLinkOptions options;
-  options.inside = state.inside.get();
-  const float more =
-      std::clamp(kErrorOfPlainSampling / aimed_error(state), kLeastSampling, kMostSampling);
-  options.rays_per_cell = static_cast<int>(more * static_cast<float>(options.rays_per_cell));
-  options.rays_per_cluster = static_cast<int>(more * static_cast<float>(options.rays_per_cluster));
-  options.area_of_all_rays = kAreaOfAllRays * state.tree[state.tree.root()].area;
-  return options;
+template <class Visit>
+void for_all_below(const ElementTree& tree, ElementId top, const Visit& visit) {
+  std::vector<ElementId> open{top};
+  while (!open.empty()) {
+    const ElementId e = open.back();
+    open.pop_back();
+    visit(e);
+    for (const ElementId child : tree[e].children()) open.push_back(child);
+  }
 }
 
 // From now on these elements and all below them receive by sampled links, and light from emitters
 // is read exactly on each.
 void hand_over(SolverState& state, const std::vector<ElementId>& receivers) {
-  std::vector<ElementId> open = receivers;
-  while (!open.empty()) {
-    const ElementId e = open.back();
-    open.pop_back();
-    state.sampled[e] = state.schedule.round;
-    state.sampled_links.clear(e);
-    state.given_light_known[e] = 0;
-    for (const ElementId child : state.tree[e].children()) open.push_back(child);
-  }
+  parallel_for(receivers.size(), 64, [&](std::size_t i) {
+    for_all_below(state.tree, receivers[i], [&](ElementId e) {
+      state.sampled[e] = state.schedule.round;
+      state.given_light_known[e] = 0;
+    });
+  });
+  if (state.sampled_links.size() == 0) return;
+  for (const ElementId receiver : receivers)
+    for_all_below(state.tree, receiver, [&](ElementId e) { state.sampled_links.clear(e); });
 }
 
 // How far the schedule has got: most of the time goes into sampled links.
@@ -325,16 +344,15 @@ float share_of_rays_within(const SolverState& state, const std::vector<ElementId
                            const SampledLinkOptions& options) {
   if (state.options.memory == 0) return 1.f;
   double wanted = 0.0;
-  for (const ElementId e : choose_receivers(state.tree, roots, state.feature_sizes))
-    wanted += rays_of(state.tree, e, options);
+  for (const ElementId e : receivers_of(state, roots)) wanted += rays_of(state.tree, e, options);
   const auto waiting = static_cast<double>(roots.size() + state.schedule.receivers.size());
   wanted *= waiting / static_cast<double>(std::max<std::size_t>(1, roots.size()));
   const auto room = static_cast<double>(memory_room(state).sampled_links);
   return wanted > room ? static_cast<float>(room / wanted) : 1.f;
 }
 
-// Gives sampled links to the next k receivers.
-void sample_receivers(SolverState& state, std::size_t k, IterationRecord& record) {
+// Gives sampled links to the next k receivers; `power`: received by all so far.
+void sample_receivers(SolverState& state, std::size_t k, double power, IterationRecord& record) {
   std::vector<ElementId>& waiting = state.schedule.receivers;
   const auto first = waiting.end() - static_cast<std::ptrdiff_t>(std::min(k, waiting.size()));
   const std::vector<ElementId> receivers(first, waiting.end());
@@ -355,16 +373,19 @@ void sample_receivers(SolverState& state, std::size_t k, IterationRecord& record
   }
   hand_over(state, receivers);
   give_light_to_clusters(state, receivers);
-  update_given_light(state, record.irradiance_threshold);
+  update_given_light(state, record.irradiance_threshold, receivers, power);
+  const std::vector<ElementId> leaves = receivers_of(state, receivers);
   state.sampled_links.append(
-      sample_links(state.tree, state.world->rays, state.opacity,
-                   choose_receivers(state.tree, receivers, state.feature_sizes), options));
+      sample_links(state.tree, state.world->rays, state.opacity, leaves, options));
+  update_row_limits(state, leaves);
   record.refined += receivers.size();
 }
 
 // Cells that were split since an earlier round have kept their links for those of their parts that
 // had none of their own yet.
 void forget_earlier_rounds(SolverState& state) {
+  // What does not matter to the view has no part in later rounds.
+  if (!state.importance.empty()) return;
   for (std::size_t i = 0; i < state.tree.size(); ++i)
     if (state.sampled[ElementId(i)] != state.schedule.round)
       state.sampled_links.clear(ElementId(i));
@@ -372,25 +393,53 @@ void forget_earlier_rounds(SolverState& state) {
   state.sampled_links.append(links);
 }
 
+bool another_coarse_round(const Schedule& todo) {
+  return todo.receiver_scale > 1.f && todo.round < kCoarseRounds;
+}
+
+// After a coarse solution: another one of more receivers, or that which is asked for.
+void go_on_from_coarse(SolverState& state) {
+  Schedule& todo = state.schedule;
+  todo.irradiance_threshold = 0.f;
+  if (another_coarse_round(todo)) {
+    todo.stage = Stage::sample;
+    return;
+  }
+  todo.coarseness = 1.f;
+  todo.level = 0;
+  todo.stage = levels_of_links(state.options) == 0 ? Stage::shape : Stage::refine;
+}
+
 // Without limit in portions all the same, to be able to stop.
 void sample_links(SolverState& state, std::size_t k, const Progress& progress,
                   IterationRecord& record) {
   Schedule& todo = state.schedule;
+  const double power = received_power(state);
   for (std::size_t left = k; left > 0 && !todo.receivers.empty() && !progress.cancelled();) {
     const std::size_t n = std::min(
         left, state.options.memory > 0 ? kReceiversAtOnceInLittleMemory : kReceiversAtOnce);
-    sample_receivers(state, n, record);
+    sample_receivers(state, n, power, record);
     left -= n;
     progress.report("solve", share_done(state));
   }
   if (!todo.receivers.empty()) return;
   if (todo.round > 1 && todo.short_of_memory == 0) forget_earlier_rounds(state);
   todo.stage = Stage::converge;
+  // The next round brings sweeps enough.
+  if (todo.coarseness > 1.f && another_coarse_round(todo)) go_on_from_coarse(state);
+}
+
+// All receive by sampled links already, and what is refined only shapes elements.
+bool only_shapes(const SolverState& state, Stage stage) {
+  return stage == Stage::shape || (stage == Stage::refine && state.schedule.round > 0);
 }
 
 int expected_sweeps(const SolverState& state, const IterationBudget& budget) {
-  if (state.schedule.stage == Stage::shape) return 0;
-  if (budget.limited()) return kSweepsOfShortIteration;
+  if (only_shapes(state, state.schedule.stage)) return 0;
+  if (budget.limited()) {
+    const bool among_many = state.schedule.stage == Stage::sample && state.schedule.round > 1;
+    return among_many ? 1 : kSweepsOfShortIteration;
+  }
   const auto last = std::find_if(state.history.rbegin(), state.history.rend(),
                                  [](const IterationRecord& r) { return r.sweeps > 0; });
   return last != state.history.rend() ? last->sweeps : kFirstGuessOfSweeps;
@@ -400,6 +449,9 @@ int expected_sweeps(const SolverState& state, const IterationBudget& budget) {
 std::size_t units_within(const SolverState& state, const IterationBudget& budget, std::size_t size,
                          int sweeps) {
   const Stage stage = state.schedule.stage;
+  // A part of the scene is no result.
+  if (stage == Stage::sample && state.schedule.round == 1 && state.links.size() == 0)
+    return kUnlimited;
   const std::size_t links = stage == Stage::sample && budget.links < kUnlimited
                                 ? budget.links / sampled_link_options(state).rays_per_cell
                                 : budget.links;
@@ -407,6 +459,12 @@ std::size_t units_within(const SolverState& state, const IterationBudget& budget
                                   ? state.costs.affordable(stage, budget.seconds, size, sweeps)
                                   : kUnlimited;
   return std::max<std::size_t>(1, std::min(links, in_time));
+}
+
+std::size_t most_coarse_receivers(int round) {
+  std::size_t most = kFirstReceivers;
+  for (int r = 1; r < round; ++r) most *= kMoreReceivers;
+  return most;
 }
 
 // What a stage needs to begin with.
@@ -418,14 +476,18 @@ void begin_stage(SolverState& state, bool in_short_iterations) {
       todo.pairs = failing_pairs(state);
       if (in_short_iterations) shuffle_blocks(todo.pairs);
     }
-    update_given_light(state, todo.irradiance_threshold);
+    if (todo.stage != Stage::sample) update_given_light(state, todo.irradiance_threshold);
   }
   if (todo.stage == Stage::sample && todo.receivers.empty()) {
     if (!state.emitters)
       state.emitters =
           std::make_shared<EmitterTree>(*state.visibility, find_emitters(*state.world));
     ++todo.round;
-    todo.receivers = choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes);
+    if (todo.coarseness > 1.f)
+      limit_receivers(state, most_coarse_receivers(todo.round));
+    else
+      todo.receiver_scale = 1.f;
+    todo.receivers = receivers_of(state, {state.tree.root()});
     if (!state.importance.empty())
       std::erase_if(todo.receivers,
                     [&](ElementId e) { return state.importance[e] < kNegligibleImportance; });
@@ -438,6 +500,32 @@ void begin_stage(SolverState& state, bool in_short_iterations) {
                        static_cast<std::size_t>(2 * sampled_link_options(state).rays_per_cluster)));
     if (in_short_iterations) shuffle_blocks(todo.receivers);
   }
+}
+
+void make_fine_parts(SolverState& state, const ClusterTree* clusters) {
+  state.visibility = choose_visibility(state.world, *state.surfaces, clusters, state.options);
+  if (state.emitters)
+    state.emitters = std::make_shared<EmitterTree>(*state.visibility, find_emitters(*state.world));
+  if (state.options.intra_cluster)
+    state.inside = std::make_shared<const ClusterVisibility>(
+        state.tree, state.opacity,
+        choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes));
+  state.fine_parts_made = true;
+}
+
+// These are an iteration of their own.
+bool lacks_fine_parts(const SolverState& state) {
+  return state.schedule.coarseness == 1.f && !state.fine_parts_made;
+}
+
+// Light at first comes by sampled links alone, to few receivers; with refined ones that are to
+// stay, by these.
+void begin_coarsely(SolverState& state) {
+  Schedule& todo = state.schedule;
+  todo.coarseness = std::max(1.f, kFirstError / state.options.error);
+  if (todo.coarseness == 1.f || state.options.links == LinkMaker::refined) return;
+  todo.stage = Stage::sample;
+  todo.level = state.options.levels - 1;
 }
 
 // For a smaller error than that of the links there are.
@@ -456,23 +544,25 @@ SolveOptions resolved(SolveOptions options, const World& world) {
   return options;
 }
 
-SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options) {
+SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options,
+                       Beginning beginning) {
   const auto surfaces = std::make_shared<const Surfaces>(build_surfaces(world->geometry));
   return make_state(world, surfaces,
-                    find_live_sides(world->scene, world->geometry, *surfaces, world->rays),
-                    options);
+                    find_live_sides(world->scene, world->geometry, *surfaces, world->rays), options,
+                    beginning);
 }
 
 SolverState make_state(const std::shared_ptr<const World>& world,
                        const std::shared_ptr<const Surfaces>& surfaces,
-                       const IdVector<SideId, std::uint8_t>& live, const SolveOptions& options) {
-  const ClusterTree clusters = build_hierarchy(options.hierarchy, *surfaces);
+                       const IdVector<SideId, std::uint8_t>& live, const SolveOptions& options,
+                       Beginning beginning) {
+  ClusterTree clusters = build_hierarchy(options.hierarchy, *surfaces);
   SolverState state{.world = world,
                     .surfaces = surfaces,
                     .tree = ElementTree(world->geometry, *surfaces, clusters, live),
                     .options = resolved(options, *world)};
-  state.visibility = choose_visibility(world, *surfaces, clusters, state.options);
-
+  if (options.visibility != VisibilityMode::average) clusters = {};
+  state.visibility = std::make_shared<Visibility>(*world);
   state.feature_size_rules = std::make_shared<const FeatureSizes>(
       *world, *surfaces, state.options.feature_size, options.feature_size_rules, options.pixels);
   state.feature_sizes = state.feature_size_rules->of_elements(state.tree);
@@ -492,13 +582,13 @@ SolverState make_state(const std::shared_ptr<const World>& world,
   parallel_for(n, 256, [&](std::size_t i) {
     if (!state.tree[ElementId(i)].is_cluster()) evaluate_material(state, ElementId(i));
   });
-  if (state.options.intra_cluster)
-    state.inside = std::make_shared<const ClusterVisibility>(
-        state.tree, state.opacity,
-        choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes));
   pull(state);
   state.schedule.pairs = {{state.tree.root(), state.tree.root()}};
   if (levels_of_links(state.options) == 0) state.schedule.stage = Stage::shape;
+  if (beginning == Beginning::coarse) begin_coarsely(state);
+  state.fine_parts_made =
+      state.schedule.stage != Stage::sample || state.options.visibility == VisibilityMode::average;
+  if (state.fine_parts_made) make_fine_parts(state, &clusters);
   return state;
 }
 
@@ -507,6 +597,17 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
   if (state.done()) return;
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t rays_before = state.world->rays.ray_total();
+  if (lacks_fine_parts(state)) {
+    IterationRecord record{.stage = todo.stage,
+                           .links = state.link_total(),
+                           .elements = state.tree.size(),
+                           .predicted_seconds = least_iteration_seconds(state)};
+    make_fine_parts(state, nullptr);
+    record.refine_seconds = seconds_since(start);
+    record.rays = state.world->rays.ray_total() - rays_before;
+    state.history.push_back(record);
+    return;
+  }
   begin_stage(state, budget.limited());
 
   const Stage stage = todo.stage;
@@ -517,7 +618,8 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
   if (stage == Stage::refine) refine_links(state, k, progress, record);
   if (stage == Stage::shape) shape_elements(state, k, progress, record);
   if (stage == Stage::sample) sample_links(state, k, progress, record);
-  if (record.refined > 0 || stage == Stage::sample) state.row_limits.clear();
+  if (record.refined > 0 && stage == Stage::refine && !only_shapes(state, stage))
+    state.row_limits.clear();
   record.refine_seconds = seconds_since(start);
   // Of the units that were chosen, by what earlier iterations took.
   record.predicted_seconds = state.costs.predict(stage, record.refined, size, sweeps);
@@ -528,14 +630,12 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
 
   // While only elements are shaped, nothing new arrives anywhere.
   Sweeps swept;
-  if (stage != Stage::shape)
-    swept = sweep(state, budget.limited() ? kSweepsOfShortIteration : kMostSweeps);
+  if (!only_shapes(state, stage))
+    swept = sweep(state, budget.limited() ? sweeps : kMostSweeps,
+                  todo.coarseness > 1.f ? kLittleChangeOfCoarse : kLittleChange);
   if (todo.stage == Stage::converge && (swept.converged || !budget.limited())) {
     todo.stage = Stage::done;
-    if (todo.coarseness > 1.f) {
-      todo.coarseness = 1.f;
-      begin_finer_links(state);
-    }
+    if (todo.coarseness > 1.f) go_on_from_coarse(state);
   }
   record.sweeps = swept.count;
   record.sweep_seconds = seconds_since(start) - record.refine_seconds;
@@ -552,15 +652,13 @@ void aim_finer(SolverState& state, float factor) {
   begin_finer_links(state);
 }
 
-void begin_coarsely(SolverState& state) {
-  state.schedule.coarseness = std::max(1.f, kFirstError / state.options.error);
-}
-
 float aimed_error(const SolverState& state) {
   return state.schedule.coarseness * state.options.error;
 }
 
 double least_iteration_seconds(const SolverState& state) {
+  if (lacks_fine_parts(state))
+    return kFinePartsOfElement * static_cast<double>(state.tree.initial_size());
   return state.costs.predict(state.schedule.stage, 1, state.tree.size() + state.link_total(),
                              kSweepsOfShortIteration);
 }

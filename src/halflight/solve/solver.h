@@ -52,12 +52,14 @@ struct SolveOptions {
 struct SolverState {
   std::shared_ptr<const World> world;
   std::shared_ptr<const Surfaces> surfaces;
+  // Exact as long as `fine_parts_made` is false.
   std::shared_ptr<const Visibility> visibility{};
   std::shared_ptr<const FeatureSizes> feature_size_rules{};
   ElementTree tree;
   SolveOptions options;  // resolved: no zeros that stand for defaults
-  // Inside clusters that receive and send as one; null: not asked for.
+  // Inside clusters that receive and send as one; null: not asked for, or not made yet.
   std::shared_ptr<const ClusterVisibility> inside{};
+  bool fine_parts_made = true;  // what only the solution that is asked for needs: these two
 
   IdVector<ElementId, float> feature_sizes{};  // s of each element, metres
   // Of errors at each element (importance.h); empty: all count alike.
@@ -97,11 +99,18 @@ struct SolverState {
 // Options with defaults put in for what is left open.
 SolveOptions resolved(SolveOptions options, const World& world);
 
-SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options);
+enum class Beginning {
+  as_asked,  // aims at the error that is asked for
+  coarse,    // at first at complete coarse solutions, out of which the one asked for grows
+};
+
+SolverState make_state(const std::shared_ptr<const World>& world, const SolveOptions& options,
+                       Beginning beginning = Beginning::as_asked);
 // The same where it is known which sides can see light (hierarchy/live_sides.h).
 SolverState make_state(const std::shared_ptr<const World>& world,
                        const std::shared_ptr<const Surfaces>& surfaces,
-                       const IdVector<SideId, std::uint8_t>& live, const SolveOptions& options);
+                       const IdVector<SideId, std::uint8_t>& live, const SolveOptions& options,
+                       Beginning beginning = Beginning::as_asked);
 
 // What one iteration may cost. Without limits an iteration goes to the next level of the threshold.
 struct IterationBudget {
@@ -117,9 +126,6 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
 
 // Sets out for an error smaller by a factor above 1, once done: finer elements, more rays.
 void aim_finer(SolverState& state, float factor);
-// To be called before the first iteration: at first the solve aims at a coarse solution, complete
-// with its sampled links, out of which the one asked for grows. All in all that takes no longer.
-void begin_coarsely(SolverState& state);
 // The error that the links being made aim at.
 float aimed_error(const SolverState& state);
 

@@ -1,7 +1,9 @@
 #include "halflight/solve/sweep.h"
 
+#include <algorithm>
 #include <array>
 #include <bitset>
+#include <utility>
 
 #include <glm/matrix.hpp>
 
@@ -13,18 +15,36 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;
 constexpr float kLargestRow = 1.3f;  // of refined links
-// Of all reflected power that may change in the last sweep.
-constexpr double kLargestChange = static_cast<double>(2e-4f);
 
-// Clusters numbered by themselves, so that only they carry directional irradiance.
+// Below a cluster that receives by sampled links nothing has links of its own, until it is handed
+// over by itself: what arrives at the cluster goes straight to its cells.
+bool carries_light(const SolverState& state, ElementId e) {
+  const Element& element = state.tree[e];
+  return element.is_cluster() && (state.sampled[e] == 0 || !element.parent.valid() ||
+                                  state.sampled[element.parent] != state.sampled[e]);
+}
+
+// Clusters that carry directional irradiance, numbered by themselves.
 struct ClusterNumbers {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> of_element;
   std::size_t count = 0;
 
-  explicit ClusterNumbers(const ElementTree& tree) : of_element(tree.initial_size()) {
-    for (std::size_t i = 0; i < tree.initial_size(); ++i)
-      if (tree[ElementId(i)].is_cluster()) of_element[i] = static_cast<std::uint32_t>(count++);
+  explicit ClusterNumbers(const SolverState& state) : of_element(state.tree.initial_size(), kNone) {
+    const ElementTree& tree = state.tree;
+    constexpr std::size_t kBlock = 1 << 15;
+    std::vector<std::uint32_t> first((tree.initial_size() + kBlock - 1) / kBlock, 0);
+    const auto number_block = [&](std::size_t b, std::uint32_t next) {
+      const std::size_t last = std::min(tree.initial_size(), (b + 1) * kBlock);
+      for (std::size_t i = b * kBlock; i < last; ++i)
+        if (carries_light(state, ElementId(i))) of_element[i] = next++;
+      return next;
+    };
+    parallel_for(first.size(), 1, [&](std::size_t b) { first[b] = number_block(b, 0); });
+    for (std::uint32_t& n : first) count += std::exchange(n, static_cast<std::uint32_t>(count));
+    parallel_for(first.size(), 1, [&](std::size_t b) { number_block(b, first[b]); });
   }
+  bool has(ElementId e) const { return of_element[e.value] != kNone; }
   std::uint32_t operator[](ElementId e) const { return of_element[e.value]; }
 };
 
@@ -36,9 +56,8 @@ std::span<const Link> links_of(const SolverState& state, ElementId receiver) {
 // directions, once for sources outside the cluster and once for those inside.
 class InnerLinks {
  public:
-  explicit InnerLinks(const SolverState& state) {
-    if (!state.inside) return;
-    const auto clusters = state.inside->clusters();
+  // Of clusters whose inside is known; the span must outlive this.
+  InnerLinks(const SolverState& state, std::span<const ElementId> clusters) : clusters_(clusters) {
     first_.resize(clusters.size() + 1, 0);
     for (std::size_t c = 0; c < clusters.size(); ++c)
       first_[c + 1] = first_[c] + links_of(state, clusters[c]).size();
@@ -58,10 +77,9 @@ class InnerLinks {
   // seen from there; from inside, to what is hidden.
   template <class Sent>
   void hand_out(SolverState& state, const Sent& sent) const {
-    if (!state.inside) return;
-    const ClusterVisibility& inside = *state.inside;
-    parallel_for(inside.clusters().size(), 16, [&](std::size_t c) {
-      const ElementId cluster = inside.clusters()[c];
+    parallel_for(clusters_.size(), 16, [&](std::size_t c) {
+      const ClusterVisibility& inside = *state.inside;
+      const ElementId cluster = clusters_[c];
       std::array<glm::mat3, 2 * kDirectionCells> from;
       std::array<std::uint8_t, 2 * kDirectionCells> used{};
       std::size_t at = first_[c];
@@ -95,6 +113,7 @@ class InnerLinks {
   static constexpr int kNoCell = 255;
   static_assert(2 * kDirectionCells <= kNoCell);
 
+  std::span<const ElementId> clusters_;
   std::vector<std::size_t> first_;  // of each cluster
   std::vector<std::uint8_t> cell_;  // of its links
 };
@@ -148,33 +167,50 @@ struct SweepPlan {
   std::vector<DirectionalIrradiance> arriving;  // at clusters
 
   explicit SweepPlan(const SolverState& state)
-      : number(state.tree), inner(state), shown(state), arriving(number.count) {}
+      : number(state),
+        inner(state, state.inside ? state.inside->clusters() : std::span<const ElementId>()),
+        shown(state),
+        arriving(number.count) {}
 };
 
-// I_r = sum of weight * sent(s, r) over the links of each element alone. Clusters whose inside is
-// known hand theirs out at once, but for light from all around.
+bool knows_inside(const SolverState& state, ElementId e) {
+  return state.inside && state.inside->knows(e);
+}
+
+// I_r = sum of weight * sent(s, r) over the links of a cell alone.
+template <class Send>
+Rgb gather_at_cell(const SolverState& state, ElementId r, const Send& sent) {
+  Rgb sum(0.f);
+  for (const Link& l : links_of(state, r))
+    if (l.sampled()) sum += l.weight * sent(l.source, r);
+  return sum;
+}
+
+// The same of a cluster. Those whose inside is known hand theirs out at once, but for light from
+// all around.
+template <class Send>
+DirectionalIrradiance gather_at_cluster(const SolverState& state, ElementId r, const Send& sent) {
+  const bool known = knows_inside(state, r);
+  DirectionalIrradiance sum;
+  for (const Link& l : links_of(state, r)) {
+    if (!l.sampled()) continue;
+    if (l.direction.all_around())
+      sum.add_isotropic(l.weight * sent(l.source, r));
+    else if (!known)
+      sum.add(l.direction.unpack(), l.weight * sent(l.source, r));
+  }
+  return sum;
+}
+
 template <class Send>
 void gather(SolverState& state, SweepPlan& plan, const Send& sent) {
   const ElementTree& tree = state.tree;
   parallel_for(tree.size(), kGrain, [&](std::size_t i) {
     const ElementId r(i);
-    if (tree[r].is_cluster()) {
-      const bool known = state.inside && state.inside->knows(r);
-      DirectionalIrradiance& sum = plan.arriving[plan.number[r]];
-      sum = {};
-      for (const Link& l : links_of(state, r)) {
-        if (!l.sampled()) continue;
-        if (l.direction.all_around())
-          sum.add_isotropic(l.weight * sent(l.source, r));
-        else if (!known)
-          sum.add(l.direction.unpack(), l.weight * sent(l.source, r));
-      }
-      return;
-    }
-    Rgb sum(0.f);
-    for (const Link& l : links_of(state, r))
-      if (l.sampled()) sum += l.weight * sent(l.source, r);
-    state.irradiance[r] = sum;
+    if (!tree[r].is_cluster())
+      state.irradiance[r] = gather_at_cell(state, r, sent);
+    else if (plan.number.has(r))
+      plan.arriving[plan.number[r]] = gather_at_cluster(state, r, sent);
   });
   plan.inner.hand_out(state, sent);
 }
@@ -194,14 +230,27 @@ void push_down(SolverState& state, ElementId cell) {
   }
 }
 
+// From a cluster to the whole sides that it lights as one.
+void push_below(SolverState& state, ElementId cluster, const DirectionalIrradiance& arriving) {
+  for (const ElementId child : state.tree[cluster].children()) {
+    if (state.sampled[child] != state.sampled[cluster]) continue;
+    if (state.tree[child].is_cluster())
+      push_below(state, child, arriving);
+    else
+      state.irradiance[child] += arriving.irradiance(state.tree.normal(child));
+  }
+}
+
 // Hands everything down: all but to receivers whose sampled links bring the whole light.
 void push(SolverState& state, SweepPlan& plan) {
   const ElementTree& tree = state.tree;
   for (std::size_t depth = 0; depth < tree.depth(); ++depth)
     for_level(tree, depth, [&](ElementId e) {
       if (!tree[e].is_cluster()) return push_down(state, e);
+      if (!plan.number.has(e)) return;
       const DirectionalIrradiance& arriving = plan.arriving[plan.number[e]];
       if (!arriving.any()) return;
+      if (state.sampled[e] != 0) return push_below(state, e, arriving);
       for (const ElementId child : tree[e].children()) {
         if (state.sampled[child] != state.sampled[e]) continue;
         if (tree[child].is_cluster())
@@ -217,16 +266,29 @@ void push(SolverState& state, SweepPlan& plan) {
 // estimated one by one, and those of a nook may add up to much more than 1: pale surfaces there
 // would feed each other without end. Sums a little above 1 are noise, and cutting only those would
 // lose energy.
+float row_limit(const SolverState& state, ElementId e) {
+  const float largest = state.sampled[e] != 0 ? 1.f : kLargestRow;
+  return std::min(1.f, largest / std::max(state.irradiance[e].r, 1e-6f));
+}
+
 IdVector<ElementId, float> find_row_limits(SolverState& state, SweepPlan& plan) {
   gather(state, plan, [&](ElementId s, ElementId) { return Rgb(state.opacity[s]); });
   push(state, plan);
   IdVector<ElementId, float> limits(state.tree.size());
-  parallel_for(limits.size(), kGrain, [&](std::size_t i) {
-    const ElementId e(i);
-    const float largest = state.sampled[e] != 0 ? 1.f : kLargestRow;
-    limits[e] = std::min(1.f, largest / std::max(state.irradiance[e].r, 1e-6f));
-  });
+  parallel_for(limits.size(), kGrain,
+               [&](std::size_t i) { limits[ElementId(i)] = row_limit(state, ElementId(i)); });
   return limits;
+}
+
+template <class Visit>
+void for_all_cells_below(const ElementTree& tree, ElementId top, const Visit& visit) {
+  std::vector<ElementId> open{top};
+  while (!open.empty()) {
+    const ElementId e = open.back();
+    open.pop_back();
+    if (!tree[e].is_cluster()) visit(e);
+    for (const ElementId child : tree[e].children()) open.push_back(child);
+  }
 }
 
 // Adds what arrives by no link to the limited light of the links.
@@ -291,7 +353,33 @@ void pull(SolverState& state) {
     });
 }
 
-Sweeps sweep(SolverState& state, int most_sweeps) {
+void update_row_limits(SolverState& state, std::span<const ElementId> receivers) {
+  if (state.row_limits.empty()) return;
+  const ElementTree& tree = state.tree;
+  const auto sent = [&](ElementId s, ElementId) { return Rgb(state.opacity[s]); };
+  std::vector<ElementId> known;
+  for (const ElementId r : receivers)
+    if (knows_inside(state, r)) known.push_back(r);
+  const auto for_receivers = [&](const auto& act) {
+    parallel_for(receivers.size(), 16, [&](std::size_t i) { act(receivers[i]); });
+  };
+  for_receivers([&](ElementId r) {
+    for_all_cells_below(tree, r, [&](ElementId e) { state.irradiance[e] = Rgb(0.f); });
+  });
+  InnerLinks(state, known).hand_out(state, sent);
+  for_receivers([&](ElementId r) {
+    if (tree[r].is_cluster())
+      push_below(state, r, gather_at_cluster(state, r, sent));
+    else
+      state.irradiance[r] += gather_at_cell(state, r, sent);
+    for_all_cells_below(tree, r, [&](ElementId e) {
+      if (tree[tree[e].parent].is_cluster()) push_down(state, e);
+    });
+    for_all_cells_below(tree, r, [&](ElementId e) { state.row_limits[e] = row_limit(state, e); });
+  });
+}
+
+Sweeps sweep(SolverState& state, int most_sweeps, double largest_change) {
   SweepPlan plan(state);
   if (state.row_limits.size() != state.tree.size()) state.row_limits = find_row_limits(state, plan);
   Sweeps done;
@@ -303,7 +391,7 @@ Sweeps sweep(SolverState& state, int most_sweeps) {
     const Change change = change_of_radiosity(state);
     pull(state);
     ++done.count;
-    done.converged = change.absolute <= kLargestChange * change.reflected;
+    done.converged = change.absolute <= largest_change * change.reflected;
   }
   return done;
 }

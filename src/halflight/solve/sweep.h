@@ -1,6 +1,8 @@
 // One sweep: gather over the links, push irradiance down to the leaves, pull radiosity up.
 #pragma once
 
+#include <span>
+
 #include "halflight/solve/solver.h"
 
 namespace halflight {
@@ -10,8 +12,14 @@ struct Sweeps {
   bool converged = false;
 };
 inline constexpr int kMostSweeps = 60;
-// Sweeps (Jacobi) until radiosity hardly changes any more.
-Sweeps sweep(SolverState& state, int most_sweeps = kMostSweeps);
+inline constexpr double kLittleChange = 2e-4;
+// Sweeps (Jacobi) until not more than this share of all reflected power changes.
+Sweeps sweep(SolverState& state, int most_sweeps = kMostSweeps,
+             double largest_change = kLittleChange);
+
+// After these receivers, and no others, have got new links: finds anew by what the light of links
+// is multiplied at and below them. Their irradiance is left undefined.
+void update_row_limits(SolverState& state, std::span<const ElementId> receivers);
 
 // Radiosity of every element from the irradiance of the leaves: B = rho E + pi L, means upwards.
 void pull(SolverState& state);

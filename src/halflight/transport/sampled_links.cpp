@@ -186,17 +186,9 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
 
 std::vector<ElementId> choose_receivers(const ElementTree& tree, std::vector<ElementId> below,
                                         const IdVector<ElementId, float>& largest_diameter) {
-  std::vector<ElementId> receivers, open = std::move(below);
-  while (!open.empty()) {
-    const ElementId e = open.back();
-    open.pop_back();
-    const bool small_cluster = tree[e].is_cluster() && tree[e].diameter() <= largest_diameter[e];
-    if (tree[e].is_leaf() ? !tree[e].is_cluster() : small_cluster)
-      receivers.push_back(e);
-    else
-      for (const ElementId child : tree[e].children()) open.push_back(child);
-  }
-  return receivers;
+  return cut_into_receivers(tree, std::move(below), [&](ElementId cluster) {
+    return tree[cluster].diameter() <= largest_diameter[cluster];
+  });
 }
 
 int rays_of(const ElementTree& tree, ElementId receiver, const SampledLinkOptions& options) {

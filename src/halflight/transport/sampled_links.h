@@ -30,8 +30,24 @@ struct SampledLinkOptions {
   const ClusterVisibility* inside = nullptr;
 };
 
-// The cut of the tree below some elements that receives: clusters up to their largest diameter
-// (metres), with directional irradiance, and leaf cells outside them.
+// The cut of the tree below some elements that receives: clusters of which `as_one(cluster)` holds,
+// with directional irradiance, and leaf cells outside them.
+template <class AsOne>
+std::vector<ElementId> cut_into_receivers(const ElementTree& tree, std::vector<ElementId> below,
+                                          const AsOne& as_one) {
+  std::vector<ElementId> receivers, open = std::move(below);
+  while (!open.empty()) {
+    const ElementId e = open.back();
+    open.pop_back();
+    if (tree[e].is_leaf() ? !tree[e].is_cluster() : tree[e].is_cluster() && as_one(e))
+      receivers.push_back(e);
+    else
+      for (const ElementId child : tree[e].children()) open.push_back(child);
+  }
+  return receivers;
+}
+
+// With the clusters up to their largest diameter (metres).
 std::vector<ElementId> choose_receivers(const ElementTree& tree, std::vector<ElementId> below,
                                         const IdVector<ElementId, float>& largest_diameter);
 

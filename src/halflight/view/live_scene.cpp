@@ -66,10 +66,10 @@ void make_live_state(LiveScene& live, const std::shared_ptr<const Surfaces>& sur
   SolveOptions options = live.options;
   // What a pilot has found out about this scene still holds after a move.
   if (same_feature_size && options.visibility == VisibilityMode::multires &&
-      options.visibility_pilot && live.state->visibility->mode() == VisibilityMode::exact)
+      options.visibility_pilot && live.state->fine_parts_made &&
+      live.state->visibility->mode() == VisibilityMode::exact)
     options.visibility = VisibilityMode::exact;
-  live.state.emplace(make_state(live.world, surfaces, sides, options));
-  begin_coarsely(*live.state);
+  live.state.emplace(make_state(live.world, surfaces, sides, options, Beginning::coarse));
   if (live.groups.empty()) return;
   set_groups(*live.state, live.groups);
   if (live.dimmed()) shine(*live.state, live.factors);
