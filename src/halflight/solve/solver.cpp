@@ -38,6 +38,7 @@ constexpr double kShareOfCoarse = 0.1;  // of the work, roughly
 constexpr float kBlindCells = 8.f;      // RefineOptions::largest_blind_cell in feature sizes
 constexpr float kLeastTolerance = 0.15f;
 constexpr int kSweepsOfShortIteration = 2;
+constexpr int kSweepsOfFirstResult = 4;  // a few bounces
 constexpr double kLittleChangeOfCoarse = 0.02;
 constexpr double kFinePartsOfElement = 3e-6;  // seconds, before it is known
 constexpr int kFirstGuessOfSweeps = 10;
@@ -437,6 +438,7 @@ bool only_shapes(const SolverState& state, Stage stage) {
 int expected_sweeps(const SolverState& state, const IterationBudget& budget) {
   if (only_shapes(state, state.schedule.stage)) return 0;
   if (budget.limited()) {
+    if (state.schedule.stage == Stage::sample && state.history.empty()) return kSweepsOfFirstResult;
     const bool among_many = state.schedule.stage == Stage::sample && state.schedule.round > 1;
     return among_many ? 1 : kSweepsOfShortIteration;
   }
