@@ -122,7 +122,7 @@ void transfers(benchmark::State& run, int things) {
 // Inside of all clusters that receive as one, from all directions: elements.
 void item_buffers(benchmark::State& run, int things) {
   const SolverState& state = solved(things);
-  const auto receivers = choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes);
+  const auto receivers = choose_receivers(state.tree, {state.tree.root()}, state.receiver_sizes);
   for (auto _ : run)
     benchmark::DoNotOptimize(ClusterVisibility(state.tree, state.opacity, receivers));
   count_items(run, state.tree.size());
@@ -144,7 +144,7 @@ void item_picture(benchmark::State& run, int things) {
 void sampled_links(benchmark::State& run, int things) {
   constexpr std::size_t kReceivers = 2000;
   const SolverState& state = solved(things);
-  const auto all = choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes);
+  const auto all = choose_receivers(state.tree, {state.tree.root()}, state.receiver_sizes);
   std::vector<ElementId> some;
   for (std::size_t i = 0; i < std::min(kReceivers, all.size()); ++i)
     some.push_back(all[i * all.size() / std::min(kReceivers, all.size())]);

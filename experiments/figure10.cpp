@@ -202,7 +202,7 @@ void judge(SolvedClusters& solved, const SolverState& state, const std::vector<E
 std::vector<ElementId> choose_items(const SolverState& state) {
   const ClusterVisibility inside(
       state.tree, state.opacity,
-      choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes));
+      choose_receivers(state.tree, {state.tree.root()}, state.receiver_sizes));
   std::vector<ElementId> all, chosen;
   for (const ElementId cluster : inside.clusters())
     for (const auto& item : inside.items(cluster)) all.push_back(item.cell);

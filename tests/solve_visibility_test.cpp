@@ -92,7 +92,8 @@ TEST(ClusterLight, IsThatOfItsCellsOnTheMean) {
   SampledLinkOptions options;
   double of_clusters = 0.0, of_cells = 0.0;
   int clusters = 0;
-  for (const ElementId r : choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes)) {
+  for (const ElementId r :
+       choose_receivers(state.tree, {state.tree.root()}, state.receiver_sizes)) {
     if (!state.tree[r].is_cluster()) continue;
     ++clusters;
     const DirectionalIrradiance light = directional_irradiance(

@@ -12,8 +12,9 @@ constexpr std::uint32_t kTextureSamples = 8;
 constexpr std::uint32_t kPointsOfCell = 4;
 // Cells that receive much get more points: a share of all received power for each.
 constexpr double kShareOfPoint = 1e-4;
-constexpr std::uint32_t kMostPoints = 16;
-constexpr int kSkyRays = 16;  // of each point
+constexpr std::uint32_t kMostPoints = 128;
+constexpr float kWeightOfHidden = 1e-3f;  // of a point that is seen from nowhere
+constexpr int kSkyRays = 16;              // of each point
 
 constexpr DirectLightOptions kCellDirectLight{
     .shadow_rays = 8, .penumbra_rays = 8, .largest_group_share = 0.05f, .smallest_angle = 0.01f};
@@ -49,6 +50,15 @@ bool is_buried(const SolverState& state, const Vec3& x, const Vec3& n, std::uint
   return hit && !state.tree.leaf_hit(*hit).valid();
 }
 
+// Whether a place is seen from farther away than its cell is large, by one ray. Seen from there a
+// cell looks like the part of it that lies open, which gets more light than what things stand on.
+bool lies_open(const SolverState& state, ElementId cell, const Vec3& x, const Vec3& n,
+               std::uint64_t seed) {
+  const RayScene& rays = state.world->rays;
+  const Vec3 w = Frame::from_normal(n).to_world(cosine_hemisphere(random_shift(seed)));
+  return !rays.closest_hit(rays.lift(x, n), w, state.tree.cell_size(cell), hash(seed));
+}
+
 double received_power(const SolverState& state, ElementId cell) {
   return static_cast<double>(state.tree[cell].area) *
          static_cast<double>(average(state.irradiance[cell]));
@@ -80,7 +90,8 @@ DirectLightOptions cell_direct_light(const SolverState& state, ElementId cell, d
   return options;
 }
 
-// Of the part that is not covered. Light from emitters is left to refined links.
+// Of the part that is not covered; of what is kept, of the part that lies open. Light from emitters
+// is left to refined links.
 GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uint32_t samples,
                               std::uint64_t stream, const DirectLightOptions& direct) {
   const EmitterTree* emitters = state.sampled[cell] != 0 ? state.emitters.get() : nullptr;
@@ -91,24 +102,27 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uin
   GivenLight result;
   float sum = 0.f, squares = 0.f;
   const Vec2 shift = random_shift(hash(cell.value, stream, 11));
-  float count = 0.f;
+  float count = 0.f, weights = 0.f;
   for (std::uint32_t k = 0; k < samples; ++k) {
     const Vec3 x = state.tree.sample(cell, r2_sequence(k, shift)).position;
     if (is_buried(state, x, n, hash(cell.value, k, stream, 17))) continue;
+    const bool open = stream == kPilot || lies_open(state, cell, x, n, hash(cell.value, k, 19));
+    const float weight = open ? 1.f : kWeightOfHidden;
     count += 1.f;
+    weights += weight;
     Rgb e = punctual_irradiance(*state.visibility, x, n, s) +
             sky_irradiance(*state.visibility, x, n, kSkyRays,
                            random_shift(hash(cell.value, k, stream)), s);
-    result.outer += e;
+    result.outer += weight * e;
     if (emitters)
       e += emitters->irradiance(x, n, direct, random_shift(hash(cell.value, samples_of(k), 13)));
-    result.mean += e;
+    result.mean += weight * e;
     sum += average(e);
     squares += average(e) * average(e);
   }
   if (count == 0.f) return result;
-  result.mean /= count;
-  result.outer /= count;
+  result.mean /= weights;
+  result.outer /= weights;
   if (count > 1.f)
     result.deviation = std::sqrt(std::max(0.f, (squares - sum * sum / count) / (count - 1.f)));
   return result;
@@ -220,7 +234,7 @@ std::vector<ElementId> receivers_of(const SolverState& state, std::vector<Elemen
   return cut_into_receivers(state.tree, std::move(below), [&](ElementId cluster) {
     // One light for all is no good near an emitter.
     const bool emits = max_component(state.exitance[cluster]) > 0.f;
-    return state.tree[cluster].diameter() <= (emits ? 1.f : scale) * state.feature_sizes[cluster];
+    return state.tree[cluster].diameter() <= (emits ? 1.f : scale) * state.receiver_sizes[cluster];
   });
 }
 
@@ -259,8 +273,6 @@ void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& re
     const ElementTree& tree = state.tree;
     const ElementId receiver = receivers[i];
     if (!tree[receiver].is_cluster()) return;
-    // Too near for one light on all: its cells are lit one by one.
-    if (max_component(state.exitance[receiver]) > 0.f) return;
     SampledLinkOptions options = options_of_all;
     options.feature_size = state.feature_sizes[receiver];
     const DirectLight light =

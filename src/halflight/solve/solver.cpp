@@ -67,6 +67,36 @@ std::shared_ptr<const Visibility> choose_visibility(const std::shared_ptr<const 
   return std::make_shared<Visibility>(*world, surfaces, one_cluster(surfaces), options.visibility);
 }
 
+// An emitter lies nearer to the cluster than the cluster is large.
+bool is_near_emitter(const SolverState& state, ElementId cluster) {
+  const ElementTree& tree = state.tree;
+  const Bounds3f& box = tree[cluster].box;
+  const float reach = tree[cluster].diameter();
+  std::vector<ElementId> open{tree.root()};
+  while (!open.empty()) {
+    const ElementId e = open.back();
+    open.pop_back();
+    if (!(max_component(state.exitance[e]) > 0.f)) continue;
+    const Bounds3f& other = tree[e].box;
+    const Vec3 gap = glm::max(glm::max(box.lower - other.upper, other.lower - box.upper), 0.f);
+    if (glm::dot(gap, gap) > reach * reach) continue;
+    if (tree[e].is_leaf()) return true;
+    for (const ElementId child : tree[e].children()) open.push_back(child);
+  }
+  return false;
+}
+
+IdVector<ElementId, float> receiver_sizes(const SolverState& state) {
+  IdVector<ElementId, float> sizes = state.feature_sizes;
+  parallel_for(sizes.size(), 256, [&](std::size_t i) {
+    const ElementId e(i);
+    if (state.tree[e].is_cluster() && state.tree[e].diameter() <= sizes[e] &&
+        is_near_emitter(state, e))
+      sizes[e] = 0.f;
+  });
+  return sizes;
+}
+
 // Before any light has arrived: the emitted power spread over all that it could fall on.
 float first_guess_of_irradiance(const SolverState& state) {
   double emitted = 0.0, given = 0.0, known = 0.0;
@@ -585,6 +615,7 @@ SolverState make_state(const std::shared_ptr<const World>& world,
     if (!state.tree[ElementId(i)].is_cluster()) evaluate_material(state, ElementId(i));
   });
   pull(state);
+  state.receiver_sizes = receiver_sizes(state);
   state.schedule.pairs = {{state.tree.root(), state.tree.root()}};
   if (levels_of_links(state.options) == 0) state.schedule.stage = Stage::shape;
   if (beginning == Beginning::coarse) begin_coarsely(state);

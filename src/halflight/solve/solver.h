@@ -62,6 +62,9 @@ struct SolverState {
   bool fine_parts_made = true;  // what only the solution that is asked for needs: these two
 
   IdVector<ElementId, float> feature_sizes{};  // s of each element, metres
+  // Largest diameter of a cluster that receives as one: s, but none beside emitters, which light
+  // what is near them too unevenly.
+  IdVector<ElementId, float> receiver_sizes{};
   // Of errors at each element (importance.h); empty: all count alike.
   IdVector<ElementId, float> importance{};
   std::vector<RayHit> seen{};              // in the view that is important

@@ -9,11 +9,13 @@ namespace {
 
 // Tries to find a cell of a cluster that faces a given direction.
 constexpr std::uint32_t kFacingAttempts = 16;
-constexpr float kLeastShareOfRays = 0.125f;  // of a small receiver
+// Of the rays that a receiver of area_of_all_rays takes: small ones fewer, large ones more.
+constexpr float kLeastShareOfRays = 0.125f, kMostShareOfRays = 8.f;
 
-int fewer_for_small(int rays, float area, const SampledLinkOptions& options) {
-  if (!(area < options.area_of_all_rays)) return rays;
-  const float share = std::max(kLeastShareOfRays, std::sqrt(area / options.area_of_all_rays));
+int rays_by_area(int rays, float area, const SampledLinkOptions& options) {
+  if (!(options.area_of_all_rays > 0.f)) return rays;
+  const float share =
+      std::clamp(std::sqrt(area / options.area_of_all_rays), kLeastShareOfRays, kMostShareOfRays);
   return std::max(1, static_cast<int>(share * static_cast<float>(rays)));
 }
 
@@ -133,7 +135,7 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
   const Element& c = tree[cluster];
   const float s = options.feature_size;
   const auto n = static_cast<std::uint32_t>(
-      fewer_for_small(options.shadow_rays_per_cluster, tree[cluster].area, options));
+      rays_by_area(options.shadow_rays_per_cluster, tree[cluster].area, options));
   const float share = 1.f / static_cast<float>(n);
   DirectLight light;
   const auto add = [&](std::vector<Arrival>& to, const Vec3& w, const Rgb& facing) {
@@ -193,7 +195,7 @@ std::vector<ElementId> choose_receivers(const ElementTree& tree, std::vector<Ele
 
 int rays_of(const ElementTree& tree, ElementId receiver, const SampledLinkOptions& options) {
   const int all = tree[receiver].is_cluster() ? options.rays_per_cluster : options.rays_per_cell;
-  return fewer_for_small(all, tree[receiver].area, options);
+  return rays_by_area(all, tree[receiver].area, options);
 }
 
 std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& rays,

@@ -20,8 +20,9 @@ struct SampledLinkOptions {
   int rays_per_cell = 64;
   int rays_per_cluster = 128;
   int shadow_rays_per_cluster = 32;  // to emitters, as many to the sky, one to each punctual light
-  // Receivers of less area (m2) take fewer of all these, by its square root: what they send on is
-  // averaged with much else. 0: all take all.
+  // A receiver of this area (m2) takes all of these, others fewer or more by the square root of
+  // theirs: what small ones send on is averaged with much else, large ones few others make up for.
+  // 0: all take the same.
   float area_of_all_rays = 0.f;
   float feature_size = 0.f;  // of shadows in direct light that count; 0: all
   // Where it knows a receiving cluster, a link's weight counts where the cluster is seen from the
