@@ -28,6 +28,31 @@ TEST(PathTracer, FurnaceHoldsExitanceOverOneMinusReflectance) {
   EXPECT_NEAR(t.irradiance({0.7f, 0.2f, 0.8f}, kDown), expected, kOnePercent * expected);
 }
 
+// In a furnace every surface reflects rho E: paths that end there know the rest.
+TEST(PathTracer, PathsMayEndWhereTheLightIsKnown) {
+  QuadScene quads;
+  quads.box(Vec3(0.f), Vec3(2.f, 1.f, 3.f), quads.material(0.5f, 1.f), true);
+  const Traced t(quads);
+  const float expected = kPi / (1.f - 0.5f);
+  for (const float share : {1.f, 0.5f}) {  // of hits at which it is known
+    double sum = 0.0;
+    int ended = 0;
+    constexpr int kPaths = 1 << 14;
+    for (int i = 0; i < kPaths; ++i) {
+      PathSampler sampler(7, static_cast<std::uint32_t>(i));
+      const auto known = [&](const RayHit& hit) -> std::optional<Rgb> {
+        if (hit.barycentric.x >= share) return std::nullopt;
+        ++ended;
+        return Rgb(0.5f * expected);
+      };
+      sum += static_cast<double>(
+          average(t.tracer.irradiance_by_one_path({1.5f, 0.f, 2.f}, kUp, sampler, known)));
+    }
+    EXPECT_NEAR(sum / kPaths, static_cast<double>(expected), static_cast<double>(0.01f * expected));
+    EXPECT_EQ(ended == kPaths, share == 1.f);
+  }
+}
+
 TEST(PathTracer, BackSidesReflectAsFrontSidesDoAndDoubleSidedOnesShine) {
   QuadScene quads;
   quads.box(Vec3(0.f), Vec3(1.f), quads.material(0.8f, 1.f, true), false);

@@ -12,64 +12,67 @@ namespace {
 
 constexpr int kLeastSkyRays = 64;
 
-// A surface this much brighter than the scene's mean radiosity is read like an emitter.
-constexpr float kBright = 5.f;
+// Cells this much brighter than the scene's mean radiosity are read like emitters.
+constexpr float kBright = 4.f;
 constexpr float kFinestEdge = 1e-3f;  // of the scene's diagonal
 constexpr float kErrorOfPlainReading = 0.05f;
 constexpr float kLeastReading = 1.f / 32.f, kMostReading = 8.f;
 // Of an emitter that a sensor sees through a small opening, few rays would meet anything.
-constexpr int kSensorShadowRays = 32;
-constexpr int kSensorPenumbraRays = 1024;
-constexpr int kMostBounces = 4;  // of gather rays that end nearby
+constexpr int kSensorShadowRays = 32, kFewestSensorShadowRays = 8;
+constexpr int kSensorPenumbraRays = 512, kFewestSensorPenumbraRays = 32;
+constexpr int kMostSensorPenumbraRays = 1024;
+// Of a bright cell: rays from so many times as far end nearby.
+constexpr float kMostTimesAsFar = 16.f;
+// A bright place takes at most so many times the rays.
+constexpr float kMostTimesTheRays = 64.f;
+// From so many means of the scene on, cells are too rough, and places gather.
+constexpr float kBrightForCells = 2.f;
+constexpr int kRaysInsteadOfCells = 32;  // where the mean comes in
 
-struct ReflectedPower {
-  IdVector<SideId, double> of_sides;  // W, average of the channels
-  double mean = 0.0;                  // per area of the whole scene, W/m2
-};
+float reflected_by(const SolverState& state, ElementId cell) {
+  return average(state.reflectance[cell] * state.irradiance[cell]);
+}
 
-ReflectedPower reflected_power(const SolverState& state) {
-  ReflectedPower power;
-  power.of_sides = IdVector<SideId, double>(2 * state.surfaces->surfaces.size(), 0.0);
+// W/m2, of all leaf cells that reflect.
+float mean_reflected(const SolverState& state) {
   double sum = 0.0, area = 0.0;
   for (std::size_t i = 0; i < state.tree.size(); ++i) {
     const ElementId e(i);
-    const Element& cell = state.tree[e];
-    if (!cell.is_leaf_cell()) continue;
-    const float reflected = average(state.reflectance[e] * state.irradiance[e]);
+    if (!state.tree[e].is_leaf_cell()) continue;
+    const float reflected = reflected_by(state, e);
     if (!(reflected > 0.f)) continue;
-    power.of_sides[cell.side] += static_cast<double>(cell.area * reflected);
-    sum += static_cast<double>(cell.area * reflected);
-    area += static_cast<double>(cell.area);
+    sum += static_cast<double>(state.tree[e].area * reflected);
+    area += static_cast<double>(state.tree[e].area);
   }
-  power.mean = area > 0.0 ? sum / area : 0.0;
-  return power;
+  return area > 0.0 ? static_cast<float>(sum / area) : 0.f;
 }
 
-// Surfaces that reflect much more light than others.
-std::vector<EmittingSide> find_bright_reflectors(const SolverState& state,
-                                                 const RadianceAt& reflected_radiance,
-                                                 IdVector<SideId, std::uint8_t>& is_bright) {
-  const ReflectedPower power = reflected_power(state);
-  is_bright = IdVector<SideId, std::uint8_t>(power.of_sides.size(), 0);
+// Cells that reflect much more light than the mean, cut into triangles.
+std::vector<EmittingSide> find_bright_cells(const SolverState& state, float mean_reflected,
+                                            IdVector<ElementId, std::uint8_t>& is_bright) {
+  is_bright = IdVector<ElementId, std::uint8_t>(state.tree.size(), 0);
   std::vector<EmittingSide> bright;
-  for (std::size_t i = 0; i < is_bright.size(); ++i) {
-    const SideId side(i);
-    const ElementId cell = state.tree.side_root(side);
-    if (!cell.valid() ||
-        !(power.of_sides[side] > kBright * power.mean * static_cast<double>(state.tree[cell].area)))
+  for (std::size_t i = 0; i < state.tree.size(); ++i) {
+    const ElementId cell(i);
+    if (!state.tree[cell].is_leaf_cell() || !(reflected_by(state, cell) > kBright * mean_reflected))
       continue;
-    is_bright[side] = 1;
-    const Surface& s = (*state.surfaces)[side];
-    for (std::uint32_t k = 0; k < s.triangle_count; ++k) {
-      EmittingSide emitter;
-      emitter.triangle = state.surfaces->triangles[s.first_triangle + k];
-      emitter.back = is_back(side);
-      emitter.varies = !state.tree[cell].is_leaf();
-      emitter.radiance = emitter.varies ? mean_radiance(emitter, reflected_radiance)
-                                        : state.reflectance[cell] * state.irradiance[cell] / kPi;
-      emitter.power = average(emitter.radiance) * state.world->geometry.area(emitter.triangle);
-      if (emitter.power > 0.f) bright.push_back(emitter);
-    }
+    is_bright[cell] = 1;
+    const SideId side = state.tree[cell].side;
+    EmittingSide emitter;
+    emitter.triangle = state.surfaces->triangles[(*state.surfaces)[side].first_triangle];
+    emitter.cell = cell;
+    emitter.back = is_back(side);
+    emitter.varies = true;
+    emitter.radiance = state.reflectance[cell] * state.irradiance[cell] / kPi;
+    state.tree.for_each_piece(cell, [&](std::span<const Vec3> corners) {
+      for (std::size_t k = 2; k < corners.size(); ++k) {
+        emitter.corners = {corners[0], corners[k - 1], corners[k]};
+        const float area = 0.5f * glm::length(glm::cross(emitter.corners[1] - corners[0],
+                                                         emitter.corners[2] - corners[0]));
+        emitter.power = average(emitter.radiance) * area;
+        if (emitter.power > 0.f) bright.push_back(emitter);
+      }
+    });
   }
   return bright;
 }
@@ -79,20 +82,12 @@ ReadOptions with_feature_size(ReadOptions options, float feature_size) {
   return options;
 }
 
-// In [0, 1), for one of so many rays that fill the hemisphere: of any few neighbours on the disc
-// the choices are spread evenly (a lattice of the plastic number's powers, as in r2_sequence).
-float choice_of(const Vec3& w, float rays, std::uint64_t seed) {
-  const Vec2 cell = (0.5f * std::sqrt(rays)) * Vec2(w);
-  const float x = random_shift(seed).x + 0.7548777f * cell.x + 0.5698403f * cell.y;
-  return std::min(x - std::floor(x), 0.999999f);
-}
-
 // Bright surfaces are a part of what is gathered, and worth no more rays than the rest.
 DirectLightOptions bright_options(DirectLightOptions options, int gather_rays) {
   options.shadow_rays = std::clamp(gather_rays / 8, 1, options.shadow_rays);
   options.penumbra_rays = std::clamp(gather_rays / 2, 1, options.penumbra_rays);
   options.largest_group_share =
-      std::max(options.largest_group_share, 1.f / static_cast<float>(gather_rays));
+      std::max(options.largest_group_share, 2.f / static_cast<float>(gather_rays));
   return options;
 }
 
@@ -142,8 +137,12 @@ ReadOptions sensor_reading(const SolverState& state) {
   };
   ReadOptions options;
   options.gather_rays = rays(options.gather_rays, 1);
-  options.direct.shadow_rays = kSensorShadowRays;
-  options.direct.penumbra_rays = std::min(rays(kSensorPenumbraRays, 32), kSensorPenumbraRays);
+  options.more_where_bright = true;
+  options.direct.shadow_rays =
+      std::clamp(static_cast<int>(std::sqrt(more) * static_cast<float>(kSensorShadowRays)),
+                 kFewestSensorShadowRays, kSensorShadowRays);
+  options.direct.penumbra_rays =
+      std::min(rays(kSensorPenumbraRays, kFewestSensorPenumbraRays), kMostSensorPenumbraRays);
   return options;
 }
 
@@ -151,9 +150,13 @@ SolutionReader::SolutionReader(const SolverState& state, const ReadOptions& opti
     : state_(&state),
       options_(with_feature_size(options, state.options.feature_size)),
       emitters_(*state.visibility, find_emitters(*state.world)),
+      paths_(*state.world),
       irradiance_(state),
-      bright_(*state.visibility, find_bright_reflectors(state, reflected_radiance(), is_bright_),
-              reflected_radiance()) {
+      mean_irradiance_(mean_irradiance(state)),
+      mean_reflected_(mean_reflected(state)),
+      bright_(*state.visibility, find_bright_cells(state, mean_reflected_, is_bright_),
+              bright_radiance()) {
+  if (options.more_where_bright) options_.direct.plain_light = mean_irradiance_;
   if (options.gather_rays == 0)
     indirect_.emplace(state.tree, indirect_irradiance(state), variance_of_sampled_light(state));
 }
@@ -176,59 +179,78 @@ Rgb SolutionReader::reflected_radiosity(const RayHit& hit, ElementId leaf) const
          irradiance_.at(leaf, hit_position(world.geometry, hit));
 }
 
-RadianceAt SolutionReader::reflected_radiance() const {
-  return [this](const EmittingSide& e, Vec2 barycentric) {
-    const RayHit there{.triangle = e.triangle, .barycentric = barycentric, .front = !e.back};
-    return reflected_radiosity(there) / kPi;
+RadianceAt SolutionReader::bright_radiance() const {
+  return [this](const EmittingSide& e, const Vec3& y, float distance) {
+    // Rays of a gather are enough to meet what is near.
+    if (is_near(distance, e.cell)) return Rgb(0.f);
+    return state_->reflectance[e.cell] * irradiance_.at(e.cell, y) / kPi;
   };
 }
 
-Rgb SolutionReader::gather(const Vec3& x, const Vec3& n) const {
-  // Points in the air lie in no cell.
-  const int rays = options_.gather_rays > 0 ? options_.gather_rays : kMeshReading.gather_rays;
-  return gather(x, n, {.rays = rays}) +
-         bright_.irradiance(x, n, bright_options(options_.direct, rays));
+bool SolutionReader::is_near(float distance, ElementId leaf) const {
+  const float in_means = reflected_by(*state_, leaf) / std::max(mean_reflected_, 1e-30f);
+  return distance < options_.near_hits * state_->tree.cell_size(leaf) *
+                        std::clamp(in_means, 1.f, kMostTimesAsFar);
 }
 
-Rgb SolutionReader::gather(const Vec3& x, const Vec3& n, const GatherRays& gathering) const {
+float SolutionReader::times_the_rays(const Rgb& indirect) const {
+  if (!options_.more_where_bright) return 1.f;
+  // A checkpoint may hold any numbers; what is none of them counts as the mean.
+  return std::min(std::max(1.f, average(indirect) / std::max(mean_irradiance_, 1e-30f)),
+                  kMostTimesTheRays);
+}
+
+int SolutionReader::gather_rays() const {
+  // Points in the air lie in no cell.
+  return options_.gather_rays > 0 ? options_.gather_rays : kMeshReading.gather_rays;
+}
+
+Rgb SolutionReader::gather(const ReadingPoint& point) const {
+  const ElementId leaf = point.triangle.valid() ? leaf_at(point) : ElementId();
+  const float times =
+      leaf.valid() ? times_the_rays(state_->irradiance[leaf] - state_->given_light[leaf]) : 1.f;
+  return gather(point.position, point.normal,
+                static_cast<int>(times * static_cast<float>(gather_rays())));
+}
+
+Rgb SolutionReader::gather(const Vec3& x, const Vec3& n, int rays) const {
   const World& world = *state_->world;
   const Frame frame = Frame::from_normal(n);
   const Vec3 from = world.rays.lift(x, n);
   std::uint32_t index = 0;
-  return adaptive_cosine_mean(
-      gathering.rays, gathering.shift, [&](const Vec3& w, float rays) -> SeenLight {
-        const std::uint64_t seed = hash(gathering.seed, index++);
-        const auto hit = world.rays.closest_hit(from, frame.to_world(w), kInfinity, seed);
-        if (!hit || is_bright_[state_->surfaces->side_hit(*hit)]) return Rgb(0.f);
+  const Rgb gathered =
+      adaptive_cosine_mean(rays, Vec2(0.5f), [&](const Vec3& w, float) -> SeenLight {
+        const std::uint32_t ray = index++;
+        const auto hit = world.rays.closest_hit(from, frame.to_world(w), kInfinity, hash(ray));
+        if (!hit) return Rgb(0.f);
         const ElementId leaf = state_->tree.leaf_hit(*hit);
-        const bool near = leaf.valid() && gathering.bounces < kMostBounces &&
-                          hit->distance < options_.near_hits * state_->tree.cell_size(leaf);
-        const Rgb of_cell = reflected_radiosity(*hit, leaf);
-        if (!near) return of_cell;
-        const float choice = choice_of(w, rays, gathering.seed);
-        return {reflected_radiosity_by_path(*hit, choice, seed, gathering.bounces), of_cell};
+        if (leaf.valid() && is_near(hit->distance, leaf))
+          return {reflected_radiosity_by_path(*hit, ray), reflected_radiosity(*hit, leaf)};
+        if (leaf.valid() && is_bright_[leaf] != 0) return Rgb(0.f);
+        return reflected_radiosity(*hit, leaf);
       });
+  return gathered + bright_.irradiance(x, n, bright_options(options_.direct, rays));
 }
 
-Rgb SolutionReader::reflected_radiosity_by_path(const RayHit& hit, float choice, std::uint64_t seed,
-                                                int bounces) const {
+Rgb SolutionReader::reflected_radiosity_by_path(const RayHit& hit, std::uint32_t ray) const {
   const World& world = *state_->world;
-  const Vec3 y = hit_position(world.geometry, hit), n = hit_normal(world.geometry, hit);
-  const float s = options_.direct.feature_size;
-  const Vec2 shift = random_shift(seed);
-  const Rgb irradiance = emitters_.irradiance_by_one_ray(y, n, choice, shift, s) +
-                         bright_.irradiance_by_one_ray(y, n, choice, shift, s) +
-                         punctual_irradiance(*state_->visibility, y, n, s) +
-                         sky_irradiance(*state_->visibility, y, n, 1, shift, s) +
-                         gather(y, n, {1, random_shift(hash(seed, 1)), seed, bounces + 1});
-  return reflectance_at(world.scene, world.geometry, hit.triangle, hit.barycentric) * irradiance;
+  const SurfacePoint y = surface_point(world.geometry, hit);
+  PathSampler sampler(0, ray);
+  return reflectance_at(world.scene, world.geometry, hit.triangle, hit.barycentric) *
+         paths_.irradiance_by_one_path(y.position, y.normal, sampler,
+                                       [&](const RayHit& next) -> std::optional<Rgb> {
+                                         const ElementId leaf = state_->tree.leaf_hit(next);
+                                         if (leaf.valid() && is_near(next.distance, leaf))
+                                           return std::nullopt;
+                                         return reflected_radiosity(next, leaf);
+                                       });
 }
 
 Reading SolutionReader::read(const ReadingPoint& point) const {
   if (indirect_ && point.triangle.valid()) return read_from_cell(point);
   Reading reading;
   reading.direct = direct(point.position, point.normal);
-  if (!point.direct_only) reading.indirect = gather(point.position, point.normal);
+  if (!point.direct_only) reading.indirect = gather(point);
   return reading;
 }
 
@@ -266,7 +288,12 @@ Reading SolutionReader::read_from_cell(const ReadingPoint& point) const {
   if (state_->sampled[leaf] == 0) return of_cell(point);
   Reading reading;
   reading.direct = direct(point.position, point.normal);
-  if (!point.direct_only) reading.indirect = indirect_->at(leaf, point.position);
+  if (point.direct_only) return reading;
+  reading.indirect = indirect_->at(leaf, point.position);
+  const float times = times_the_rays(reading.indirect);
+  if (times > kBrightForCells)
+    reading.indirect = gather(point.position, point.normal,
+                              static_cast<int>(times * static_cast<float>(kRaysInsteadOfCells)));
   return reading;
 }
 
@@ -294,8 +321,7 @@ std::vector<Reading> SolutionReader::indirect(std::span<const ReadingPoint> poin
   parallel_for(points.size(), 16, [&](std::size_t i) {
     if (points[i].direct_only) return;
     const bool at_once = progress.cancelled() || matters_to_nobody(points[i]);
-    readings[i].indirect =
-        at_once ? of_cell(points[i]).indirect : gather(points[i].position, points[i].normal);
+    readings[i].indirect = at_once ? of_cell(points[i]).indirect : gather(points[i]);
   });
   return readings;
 }

@@ -8,6 +8,7 @@
 
 #include "halflight/output/light_reader.h"
 #include "halflight/output/smooth_irradiance.h"
+#include "halflight/rays/path_tracer.h"
 #include "halflight/solve/solver.h"
 #include "halflight/transport/emitter_tree.h"
 
@@ -17,8 +18,12 @@ struct ReadOptions {
   // Of each point's hemisphere. None: indirect light is that of the cell, made linear over it.
   int gather_rays = 1024;
   // Of a place nearer than this, in sizes of its cell, the cell says little (gaps, corners): gather
-  // rays that end there go on as paths. 0: nowhere.
+  // rays that end there go on as paths. Of bright cells from as much further as they are brighter
+  // than the scene (insides of lamps). 0: nowhere.
   float near_hits = 0.5f;
+  // Places brighter than the scene's mean take more rays, in proportion: so much larger are their
+  // errors.
+  bool more_where_bright = false;
   DirectLightOptions direct;
 };
 
@@ -70,30 +75,30 @@ class SolutionReader {
  private:
   // Of a point on a triangle.
   ElementId leaf_at(const ReadingPoint& point) const;
+  // Whether a cell says too little about a place of it that is seen from so near.
+  bool is_near(float distance, ElementId leaf) const;
+  // As many times the rays of others a place takes that receives this much reflected light.
+  float times_the_rays(const Rgb& indirect) const;
+  int gather_rays() const;
   Rgb reflected_radiosity(const RayHit& hit, ElementId leaf) const;
   Reading read_from_cell(const ReadingPoint& point) const;
   bool matters_to_nobody(const ReadingPoint& point) const;
-  RadianceAt reflected_radiance() const;  // refers to the reader
+  RadianceAt bright_radiance() const;  // refers to the reader
   // Light reflected at least once.
-  Rgb gather(const Vec3& x, const Vec3& n) const;
-  struct GatherRays {
-    int rays = 1;
-    Vec2 shift{0.5f};
-    std::uint64_t seed = 0;
-    int bounces = 0;  // of the path that led here
-  };
-  Rgb gather(const Vec3& x, const Vec3& n, const GatherRays& gathering) const;
-  // One ray to an emitter of this choice in [0, 1), and one on.
-  Rgb reflected_radiosity_by_path(const RayHit& hit, float choice, std::uint64_t seed,
-                                  int bounces) const;
+  Rgb gather(const Vec3& x, const Vec3& n, int rays) const;
+  Rgb gather(const ReadingPoint& point) const;
+  // By a path that ends where cells are far enough away.
+  Rgb reflected_radiosity_by_path(const RayHit& hit, std::uint32_t ray) const;
 
   const SolverState* state_;
   ReadOptions options_;
   EmitterTree emitters_;
+  PathTracer paths_;
   SmoothIrradiance irradiance_;
-  // Surfaces so bright by reflection (insides of lamps) that the few rays of a gather that meet
+  float mean_irradiance_ = 0.f, mean_reflected_ = 0.f;  // of the scene, W/m2
+  // Cells so bright by reflection (in and around lamps) that the few rays of a gather that meet
   // them would show: they are read like emitters, and the gather leaves them out.
-  IdVector<SideId, std::uint8_t> is_bright_;
+  IdVector<ElementId, std::uint8_t> is_bright_;
   EmitterTree bright_;
   std::optional<SmoothIrradiance> indirect_;  // where there are no rays to gather with
 };

@@ -57,7 +57,8 @@ Rgb PathTracer::sampled_light(const Vec3& p, const Vec3& n, PathSampler& sampler
 
 // E = light samples + pi * (radiance along a cosine-distributed ray), and that radiance is
 // emission + rho / pi * E at the point it comes from.
-Rgb PathTracer::irradiance_by_one_path(Vec3 p, Vec3 n, PathSampler& sampler) const {
+Rgb PathTracer::irradiance_by_one_path(Vec3 p, Vec3 n, PathSampler& sampler,
+                                       const KnownRadiosity& known) const {
   Rgb total(0.f), weight(1.f);
   for (int bounce = 0;; ++bounce) {
     const Vec3 origin = world_->rays.lift(p, n);
@@ -76,6 +77,8 @@ Rgb PathTracer::irradiance_by_one_path(Vec3 p, Vec3 n, PathSampler& sampler) con
       const float by_light = emitters_.density(hit->triangle, origin, n, direction * hit->distance);
       total += weight * emitted * (kPi * power_heuristic(local.z / kPi, by_light));
     }
+    if (known)
+      if (const auto radiosity = known(*hit)) return total + weight * *radiosity;
     weight *= reflectance_at(world_->scene, world_->geometry, hit->triangle, hit->barycentric);
     const float survival = std::min(max_component(weight), kHighestSurvival);
     if (!(survival > 0.f)) return total;

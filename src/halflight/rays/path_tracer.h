@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 
 #include "halflight/base/vec.h"
 #include "halflight/rays/emitters.h"
@@ -17,6 +19,10 @@ struct IrradianceEstimate {
   Rgb mean{0.f};            // W/m2 (or lux)
   Rgb standard_error{0.f};  // of the mean; infinite for fewer than 2 samples
 };
+
+// What a path that meets a surface need not find out: the radiosity there less emission, W/m2.
+// None: it is not known, and the path goes on.
+using KnownRadiosity = std::function<std::optional<Rgb>(const RayHit&)>;
 
 class PathTracer {
  public:
@@ -32,6 +38,10 @@ class PathTracer {
   IrradianceEstimate estimate_irradiance(const Vec3& point, const Vec3& normal,
                                          std::uint32_t samples, std::uint64_t seed) const;
 
+  // The same by one path.
+  Rgb irradiance_by_one_path(Vec3 p, Vec3 n, PathSampler& sampler,
+                             const KnownRadiosity& known = {}) const;
+
   // One-path estimate of the radiance that arrives at `origin` against `direction`. Sky and
   // emitters are visible.
   Rgb radiance(const Vec3& origin, const Vec3& direction, PathSampler& sampler) const;
@@ -45,7 +55,6 @@ class PathTracer {
   const Emitters& emitters() const { return emitters_; }
 
  private:
-  Rgb irradiance_by_one_path(Vec3 p, Vec3 n, PathSampler& sampler) const;
   Rgb sampled_light(const Vec3& p, const Vec3& n, PathSampler& sampler) const;
   Rgb directional_light(const Vec3& p, const Vec3& n) const;
 

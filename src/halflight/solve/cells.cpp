@@ -72,20 +72,27 @@ std::uint32_t points_of(const SolverState& state, ElementId cell, double total_p
   return std::max(static_cast<std::uint32_t>(points), whole_and_small ? 1u : kPointsOfCell);
 }
 
-// Where a cell's light is noisy, little is lost if it is one of many like it.
+// Where a cell's light is noisy, little is lost if it is one of many like it. Not in front of an
+// emitter: few rays say too little of what may come from there.
 bool is_slight(const SolverState& state, ElementId cell, double total_power) {
-  const double mean = total_power / static_cast<double>(state.tree[state.tree.root()].area);
-  return received_power(state, cell) < kShareOfPoint * total_power &&
-         static_cast<double>(average(state.irradiance[cell])) < kBright * mean;
+  const double bright =
+      kBright * total_power / static_cast<double>(state.tree[state.tree.root()].area);
+  if (received_power(state, cell) >= kShareOfPoint * total_power ||
+      static_cast<double>(average(state.irradiance[cell])) >= bright)
+    return false;
+  return !state.emitters || static_cast<double>(state.emitters->unoccluded_irradiance(
+                                state.tree[cell].center(), state.tree.normal(cell))) <= bright;
 }
 
 DirectLightOptions cell_direct_light(const SolverState& state, ElementId cell, double total_power) {
-  const bool slight = is_slight(state, cell, total_power);
-  DirectLightOptions options = slight ? kSlightDirectLight : kCellDirectLight;
-  const float share = std::min(1.f, kErrorOfAllShadowRays / aimed_error(state));
-  const auto rays = static_cast<int>(share * static_cast<float>(options.shadow_rays));
-  options.shadow_rays = std::max(kFewestShadowRays, rays);
-  options.penumbra_rays = options.shadow_rays;
+  DirectLightOptions options = kCellDirectLight;
+  if (is_slight(state, cell, total_power)) {
+    options = kSlightDirectLight;
+    const float share = std::min(1.f, kErrorOfAllShadowRays / aimed_error(state));
+    const auto rays = static_cast<int>(share * static_cast<float>(options.shadow_rays));
+    options.shadow_rays = std::max(kFewestShadowRays, rays);
+    options.penumbra_rays = options.shadow_rays;
+  }
   options.feature_size = state.feature_sizes[cell];
   return options;
 }
@@ -172,6 +179,22 @@ void evaluate_material(SolverState& state, ElementId cell) {
   state.opacity[cell] = weight * opacities;
   state.reflectance[cell] = weight * reflectance;
   state.exitance[cell] = is_back(side) && !m.double_sided ? Rgb(0.f) : kPi * weight * emission;
+}
+
+float brightness(const SolverState& state, ElementId e, float mean_irradiance) {
+  if (!(mean_irradiance > 0.f)) return 0.f;
+  float power = 0.f, area = 0.f;
+  std::vector<ElementId> open{e};
+  while (!open.empty()) {
+    const ElementId at = open.back();
+    open.pop_back();
+    for (const ElementId child : state.tree[at].children()) open.push_back(child);
+    if (!state.tree[at].is_leaf_cell()) continue;
+    const float light = std::max(average(state.irradiance[at]), average(state.given_light[at]));
+    power += state.tree[at].area * light;
+    area += state.tree[at].area;
+  }
+  return area > 0.f ? power / (area * mean_irradiance) : 0.f;
 }
 
 void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
@@ -269,12 +292,14 @@ SampledLinkOptions sampled_link_options(const SolverState& state) {
 void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& receivers) {
   const ClusterVisibility* inside = state.inside.get();
   const SampledLinkOptions options_of_all = sampled_link_options(state);
+  const float mean = mean_irradiance(state);
   parallel_for(receivers.size(), 16, [&](std::size_t i) {
     const ElementTree& tree = state.tree;
     const ElementId receiver = receivers[i];
     if (!tree[receiver].is_cluster()) return;
     SampledLinkOptions options = options_of_all;
     options.feature_size = state.feature_sizes[receiver];
+    options.brightness = [&](ElementId e) { return brightness(state, e, mean); };
     const DirectLight light =
         sample_direct_light(tree, *state.visibility, *state.emitters, receiver, options);
     if (inside && inside->knows(receiver)) {

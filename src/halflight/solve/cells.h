@@ -9,13 +9,17 @@
 
 namespace halflight {
 
-// A cell is not split below this size, metres: half its feature size.
-// Of all cells, whatever the feature size.
+// Metres: of all cells, whatever the feature size.
 float finest_cell(const SolverState& state);
+// A cell is not split below this size, metres: half its feature size.
 float smallest_cell(const SolverState& state, ElementId cell);
 
 // Mean reflectance and exitance of a cell, textures sampled over its area.
 void evaluate_material(SolverState& state, ElementId cell);
+
+// Light on an element as far as it is known, in means of the scene; of a cluster, of its cells by
+// area.
+float brightness(const SolverState& state, ElementId e, float mean_irradiance);
 
 // Gives new children the light of their split parent and their own material.
 void inherit(SolverState& state, const std::vector<ElementId>& split_cells);

@@ -389,6 +389,8 @@ void sample_receivers(SolverState& state, std::size_t k, double power, Iteration
   const std::vector<ElementId> receivers(first, waiting.end());
   waiting.erase(first, waiting.end());
   SampledLinkOptions options = sampled_link_options(state);
+  const float mean = mean_irradiance(state);
+  options.brightness = [&state, mean](ElementId e) { return brightness(state, e, mean); };
   const float share = share_of_rays_within(state, receivers, options);
   if (share < 1.f) {
     state.schedule.short_of_memory = 1;

@@ -23,6 +23,7 @@ constexpr float kMixed = 0.1f;
 constexpr int kLeastPlaces = 8, kLeastPlacesInView = 3;  // in view: by solid angle and cosine
 // An emitter that gives this much of the light takes all rays, others in proportion.
 constexpr float kShareOfAllRays = 0.25f;
+constexpr float kMostTimesRays = 16.f;  // where it would give more than plain light
 // Distances from a group count from this much of its size, where they bound what it gives less.
 constexpr float kNearGroup = 0.25f, kLeastDistance = 0.01f;
 constexpr std::uint32_t kChoices = ~0u;  // a stream of samples beside those of the emitters
@@ -30,6 +31,8 @@ constexpr std::uint32_t kChoices = ~0u;  // a stream of samples beside those of 
 constexpr float kLeastCosine = 0.01f;
 
 constexpr std::uint32_t kPlacesOfMean = 16;
+
+constexpr DirectLightOptions kRoughly{.largest_group_share = 0.1f, .smallest_angle = 0.2f};
 
 // Cosine of the angle between two directions less a third one's opening, never below -1.
 float cosine_of_difference(float cos_a, float cos_b) {
@@ -47,9 +50,10 @@ Vec2 other_shift(Vec2 shift, std::uint32_t emitter) {
 
 // A translucent surface shines with the share of it that is there.
 RadianceAt emitted_radiance(const World& world) {
-  return [&world](const EmittingSide& e, Vec2 barycentric) {
-    return emission_at(world.scene, world.geometry, e.triangle, barycentric) *
-           opacity_at(world.scene, world.geometry, e.triangle, barycentric);
+  return [&world](const EmittingSide& e, const Vec3& y, float) {
+    const Vec2 b = world.geometry.barycentric(e.triangle, y);
+    return emission_at(world.scene, world.geometry, e.triangle, b) *
+           opacity_at(world.scene, world.geometry, e.triangle, b);
   };
 }
 bool varies(const Material& m) {
@@ -65,15 +69,27 @@ float point_kernel(const Vec3& x, const Vec3& n, const Vec3& y, const Vec3& m) {
          (squared * squared);
 }
 
-}  // namespace
+// Weights of the 2nd and 3rd corner at a point of a triangle's plane.
+Vec2 barycentric_in(const std::array<Vec3, 3>& corners, const Vec3& p) {
+  const Vec3 u = corners[1] - corners[0], v = corners[2] - corners[0], d = p - corners[0];
+  const Vec3 normal = glm::cross(u, v);
+  return Vec2(glm::dot(glm::cross(d, v), normal), glm::dot(glm::cross(u, d), normal)) /
+         std::max(glm::dot(normal, normal), 1e-30f);
+}
 
+// Over places on the triangle, every time the same ones.
 Rgb mean_radiance(const EmittingSide& emitter, const RadianceAt& radiance_at) {
   const std::uint32_t places = emitter.varies ? kPlacesOfMean : 1;
+  const auto& [a, b, c] = emitter.corners;
   Rgb sum(0.f);
-  for (std::uint32_t k = 0; k < places; ++k)
-    sum += radiance_at(emitter, uniform_triangle(r2_sequence(k)));
+  for (std::uint32_t k = 0; k < places; ++k) {
+    const Vec2 u = uniform_triangle(r2_sequence(k));
+    sum += radiance_at(emitter, a + u.x * (b - a) + u.y * (c - a), 0.f);
+  }
   return sum / static_cast<float>(places);
 }
+
+}  // namespace
 
 std::vector<EmittingSide> find_emitters(const World& world) {
   const Geometry& g = world.geometry;
@@ -85,6 +101,7 @@ std::vector<EmittingSide> find_emitters(const World& world) {
     if (!m.emits()) continue;
     EmittingSide e;
     e.triangle = t;
+    e.corners = g.corners(t);
     e.varies = varies(m);
     e.radiance = mean_radiance(e, emitted);
     e.power = average(e.radiance) * g.area(t);
@@ -107,11 +124,11 @@ EmitterTree::EmitterTree(const Visibility& visibility, std::vector<EmittingSide>
   nodes_.reserve(2 * emitters_.size());
   build(0, static_cast<std::uint32_t>(emitters_.size()));
   for (const EmittingSide& e : emitters_) {
-    const auto [a, b, c] = world_->geometry.corners(e.triangle);
+    const auto& [a, b, c] = e.corners;
     const Vec3 middle = (a + b + c) / 3.f;
     const float size = 2.f * std::max({glm::distance(a, middle), glm::distance(b, middle),
                                        glm::distance(c, middle)});
-    shapes_.push_back({middle, normal_of(e), size});
+    shapes_.push_back({middle, normal_of(e), size, 0.5f * glm::length(glm::cross(b - a, c - a))});
   }
 }
 
@@ -128,19 +145,17 @@ Vec3 EmitterTree::normal_of(const EmittingSide& e) const {
 }
 
 std::uint32_t EmitterTree::build(std::uint32_t first, std::uint32_t count) {
-  const Geometry& g = world_->geometry;
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
   Node node;
   node.first = first;
   node.count = count;
   Bounds3f centers;
-  const auto center = [&](const EmittingSide& e) {
-    const auto [a, b, c] = g.corners(e.triangle);
-    return (a + b + c) / 3.f;
+  const auto center = [](const EmittingSide& e) {
+    return (e.corners[0] + e.corners[1] + e.corners[2]) / 3.f;
   };
   for (std::uint32_t i = first; i < first + count; ++i) {
-    for (const Vec3& p : g.corners(emitters_[i].triangle)) node.box.extend(p);
+    for (const Vec3& p : emitters_[i].corners) node.box.extend(p);
     node.power += emitters_[i].power;
     node.axis += emitters_[i].power * normal_of(emitters_[i]);
     centers.extend(center(emitters_[i]));
@@ -197,8 +212,7 @@ float EmitterTree::expected_irradiance(const Node& node, const Vec3& x, const Ve
     const bool above = glm::dot(n, between) < -0.5f * shape.size;
     if (above && glm::dot(between, between) > kFar * kFar * shape.size * shape.size)
       return e.power * point_kernel(x, n, shape.middle, shape.normal);
-    return kPi * average(e.radiance) *
-           polygon_form_factor(x, n, world_->geometry.corners(e.triangle));
+    return kPi * average(e.radiance) * polygon_form_factor(x, n, e.corners);
   }
   if (cannot_light(node, x, n)) return 0.f;
   return sent_to(node, x, kLeastDistance * node.box.diagonal());
@@ -239,10 +253,9 @@ std::vector<EmitterTree::CutNode> EmitterTree::choose_cut(const Vec3& x, const V
 // The closed form carries the kernel; rays carry its visible share, weighted by the kernel.
 Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3& n, int rays,
                                int more_rays, Vec2 shift, float feature_size) const {
-  const Geometry& g = world_->geometry;
   const EmittingSide& e = emitters_[emitter];
   const Vec3& normal = shapes_[emitter].normal;
-  const auto corner = g.corners(e.triangle);
+  const auto& corner = e.corners;
   const float height = glm::dot(normal, corner[0] - x);
   if (height >= 0.f) return Rgb(0.f);
   const float form_factor = polygon_form_factor(x, n, corner);
@@ -269,7 +282,7 @@ Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3&
     const Vec3 w = view.direction(warped.u);
     const Vec3 y = x + w * (height / std::min(glm::dot(w, normal), -1e-6f));
     // Rounding must not carry it off the triangle, or behind it.
-    Vec2 b = glm::clamp(g.barycentric(e.triangle, y), 0.f, 1.f);
+    Vec2 b = glm::clamp(barycentric_in(corner, y), 0.f, 1.f);
     b /= std::max(1.f, b.x + b.y);
     return Place{b, std::max(0.f, glm::dot(n, w)) / warped.density};
   };
@@ -307,7 +320,9 @@ Rgb EmitterTree::from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3&
       const float visible = kernel * seen(emitter, from, at(b), feature_size);
       seen_sum += visible;
       squares += visible * visible / kernel;
-      seen_radiance += visible * (e.varies ? radiance_at_(e, b) : e.radiance);
+      if (!(visible > 0.f)) continue;
+      const Vec3 y = at(b);
+      seen_radiance += visible * (e.varies ? radiance_at_(e, y, glm::distance(x, y)) : e.radiance);
     }
   };
   shoot(rays);
@@ -378,12 +393,11 @@ std::optional<EmitterPoint> EmitterTree::choose(const Vec3& x, float radius, con
   EmitterPoint point;
   point.emitter = chosen.emitter;
   const EmittingSide& e = emitters_[point.emitter];
-  const auto corner = world_->geometry.corners(e.triangle);
+  const auto& corner = e.corners;
   const Vec2 b = uniform_triangle({u.x, u.y});
   point.position = corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
   point.normal = shapes_[point.emitter].normal;
-  const float area = world_->geometry.area(e.triangle);
-  point.power = e.radiance * (area / chosen.probability);
+  point.power = e.radiance * (shapes_[point.emitter].area / chosen.probability);
   return point;
 }
 
@@ -398,34 +412,38 @@ Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptio
   };
   const auto first_of_rest = std::stable_partition(cut.begin(), cut.end(), alone);
   // Rays go where the light comes from. Light beyond all numbers has no share.
-  const auto rays_for = [&](float light, int all) {
-    const float share = std::max(0.f, light / (kShareOfAllRays * expected));
+  const auto share_of_rays = [&](float light) {
+    const float here = std::min(1.f, std::max(0.f, light / (kShareOfAllRays * expected)));
+    if (!(options.plain_light > 0.f)) return here;
+    return std::max(here, std::min(kMostTimesRays, light / options.plain_light));
+  };
+  const auto rays = [](float share, int all) {
     return std::max(1, static_cast<int>(std::ceil(share * static_cast<float>(all))));
   };
   Rgb sum(0.f);
   float rest = expected;
   for (auto c = cut.begin(); c != first_of_rest; ++c) {
     rest -= c->expected;
-    const float light = std::min(c->expected, kShareOfAllRays * expected);
-    sum += from_triangle(nodes_[c->node].first, x, n, rays_for(light, options.shadow_rays),
-                         rays_for(light, options.penumbra_rays), shift, options.feature_size);
+    const float share = share_of_rays(c->expected);
+    sum += from_triangle(nodes_[c->node].first, x, n,
+                         rays(std::min(share, std::sqrt(share)), options.shadow_rays),
+                         rays(share, options.penumbra_rays), shift, options.feature_size);
   }
   if (first_of_rest != cut.end()) {
     // In penumbrae half of them: what is mixed here is which emitters are seen.
-    const int rays =
+    const int all =
         std::max(std::min(kRaysToJudgeBy, options.penumbra_rays), options.penumbra_rays / 2);
-    sum += from_some({first_of_rest, cut.end()}, x, n, rays_for(rest, rays), shift,
+    sum += from_some({first_of_rest, cut.end()}, x, n, rays(share_of_rays(rest), all), shift,
                      options.feature_size);
   }
   return sum;
 }
 
-Rgb EmitterTree::irradiance_by_one_ray(const Vec3& x, const Vec3& n, float choice, Vec2 shift,
-                                       float feature_size) const {
-  if (empty()) return Rgb(0.f);
-  const ChosenEmitter chosen = choose_below(0, choice, x, n);
-  if (!(chosen.probability > 0.f)) return Rgb(0.f);
-  return from_triangle(chosen.emitter, x, n, 1, 1, shift, feature_size) / chosen.probability;
+float EmitterTree::unoccluded_irradiance(const Vec3& x, const Vec3& n) const {
+  if (empty()) return 0.f;
+  float sum = 0.f;
+  for (const CutNode& c : choose_cut(x, n, kRoughly)) sum += c.expected;
+  return sum;
 }
 
 }  // namespace halflight

@@ -1,8 +1,9 @@
-// A binary tree over the emitting triangles, for direct light by a cut: near emitters one by one,
-// weak ones and far groups by some of them chosen at random (after Walter et al. 2005,
-// "Lightcuts").
+// A binary tree over emitting triangles, or cells that reflect much light, for direct light by a
+// cut: near emitters one by one, weak ones and far groups by some of them chosen at random (after
+// Walter et al. 2005, "Lightcuts").
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "halflight/base/vec.h"
+#include "halflight/hierarchy/elements.h"
 #include "halflight/visibility/visibility.h"
 
 namespace halflight {
@@ -18,6 +20,9 @@ struct DirectLightOptions {
   // To an emitter that gives a quarter of the light or more, others take fewer in proportion.
   int shadow_rays = 16;    // before looking closer
   int penumbra_rays = 64;  // where the first ones disagree; weak emitters together take half
+  // Irradiance, W/m2: an emitter that would give more if nothing hid it takes as many times the
+  // rays in penumbrae, and the root of that to begin with. 0: however much it gives.
+  float plain_light = 0.f;
   // Emitters and groups of them are weak when they give at most this share of the light at the
   // point, groups also when they are seen under at most this angle (size / distance).
   float largest_group_share = 0.01f;
@@ -25,20 +30,20 @@ struct DirectLightOptions {
   float feature_size = 0.f;  // of shadows that count, metres; 0: all
 };
 
-// One side of a triangle that shines with a radiance of its own.
+// One side of a triangle that shines with a radiance of its own, or of a piece of a cell.
 struct EmittingSide {
-  TriangleId triangle;
-  bool back = false;    // from the clockwise side
+  std::array<Vec3, 3> corners;
+  TriangleId triangle;  // of the scene, that it is or whose plane it lies in
+  ElementId cell;       // invalid: a triangle of the scene
+  bool back = false;    // from the clockwise side of the scene's triangle
   Rgb radiance{0.f};    // mean over the triangle, times its opacity
   bool varies = false;  // over the triangle
   float power = 0.f;    // average(radiance) * area
 };
 
-// Radiance of one place on an emitter that varies, times its opacity.
-using RadianceAt = std::function<Rgb(const EmittingSide&, Vec2 barycentric)>;
-
-// Mean over places on a triangle, every time the same ones.
-Rgb mean_radiance(const EmittingSide& emitter, const RadianceAt& radiance_at);
+// Radiance of one place on an emitter that varies, times its opacity, as it counts at a place this
+// far away.
+using RadianceAt = std::function<Rgb(const EmittingSide&, const Vec3& y, float distance)>;
 
 // All emitting sides of the scene's triangles.
 std::vector<EmittingSide> find_emitters(const World& world);
@@ -64,10 +69,8 @@ class EmitterTree {
   Rgb irradiance(const Vec3& x, const Vec3& n, const DirectLightOptions& options,
                  Vec2 shift = Vec2(0.5f)) const;
 
-  // The same by a single ray to an emitter chosen at random: an estimate whose mean over choices in
-  // [0, 1) and all shifts is the irradiance.
-  Rgb irradiance_by_one_ray(const Vec3& x, const Vec3& n, float choice, Vec2 shift,
-                            float feature_size) const;
+  // The same if nothing stood between, roughly; of groups of emitters all that they could give.
+  float unoccluded_irradiance(const Vec3& x, const Vec3& n) const;
 
   // Chooses a place to light something at x of the given radius, about in proportion to what it
   // sends there; u in [0, 1)^3. None: nothing can.
@@ -92,7 +95,8 @@ class EmitterTree {
   std::uint32_t build(std::uint32_t first, std::uint32_t count);
   bool cannot_light(const Node& node, const Vec3& x, const Vec3& n) const;
   float expected_irradiance(const Node& node, const Vec3& x, const Vec3& n) const;
-  std::vector<CutNode> choose_cut(const Vec3& x, const Vec3& n, const DirectLightOptions&) const;
+  std::vector<CutNode> choose_cut(const Vec3& x, const Vec3& n,
+                                  const DirectLightOptions& options) const;
   Vec3 normal_of(const EmittingSide& e) const;
   Rgb from_triangle(std::uint32_t emitter, const Vec3& x, const Vec3& n, int rays, int more_rays,
                     Vec2 shift, float feature_size) const;
@@ -115,6 +119,7 @@ class EmitterTree {
   struct Shape {
     Vec3 middle, normal;
     float size = 0.f;  // diameter about the middle
+    float area = 0.f;
   };
 
   const Visibility* visibility_;

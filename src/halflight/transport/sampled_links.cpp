@@ -9,13 +9,20 @@ namespace {
 
 // Tries to find a cell of a cluster that faces a given direction.
 constexpr std::uint32_t kFacingAttempts = 16;
-// Of the rays that a receiver of area_of_all_rays takes: small ones fewer, large ones more.
-constexpr float kLeastShareOfRays = 0.125f, kMostShareOfRays = 8.f;
+constexpr float kLeastShareOfRays = 0.125f;  // of a small receiver
+constexpr float kMostShareOfArea = 8.f;      // of a large one
+constexpr float kMostTimesRays = 16.f;       // of a bright one
 
-int rays_by_area(int rays, float area, const SampledLinkOptions& options) {
-  if (!(options.area_of_all_rays > 0.f)) return rays;
-  const float share =
-      std::clamp(std::sqrt(area / options.area_of_all_rays), kLeastShareOfRays, kMostShareOfRays);
+// Rays at a receiver in proportion to the root of its area and to its light make the error of the
+// whole scene least (Neyman 1934).
+int by_area_and_light(int rays, const ElementTree& tree, ElementId receiver,
+                      const SampledLinkOptions& options) {
+  float share = 1.f;
+  if (options.area_of_all_rays > 0.f)
+    share = std::min(std::sqrt(tree[receiver].area / options.area_of_all_rays), kMostShareOfArea);
+  if (options.brightness) share *= std::max(1.f, options.brightness(receiver));
+  share =
+      std::min(std::max(kLeastShareOfRays, share), kMostTimesRays);  // also of what is no number
   return std::max(1, static_cast<int>(share * static_cast<float>(rays)));
 }
 
@@ -135,7 +142,7 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
   const Element& c = tree[cluster];
   const float s = options.feature_size;
   const auto n = static_cast<std::uint32_t>(
-      rays_by_area(options.shadow_rays_per_cluster, tree[cluster].area, options));
+      by_area_and_light(options.shadow_rays_per_cluster, tree, cluster, options));
   const float share = 1.f / static_cast<float>(n);
   DirectLight light;
   const auto add = [&](std::vector<Arrival>& to, const Vec3& w, const Rgb& facing) {
@@ -195,7 +202,7 @@ std::vector<ElementId> choose_receivers(const ElementTree& tree, std::vector<Ele
 
 int rays_of(const ElementTree& tree, ElementId receiver, const SampledLinkOptions& options) {
   const int all = tree[receiver].is_cluster() ? options.rays_per_cluster : options.rays_per_cell;
-  return rays_by_area(all, tree[receiver].area, options);
+  return by_area_and_light(all, tree, receiver, options);
 }
 
 std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& rays,

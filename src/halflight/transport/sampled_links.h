@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "halflight/hierarchy/elements.h"
@@ -24,6 +25,9 @@ struct SampledLinkOptions {
   // theirs: what small ones send on is averaged with much else, large ones few others make up for.
   // 0: all take the same.
   float area_of_all_rays = 0.f;
+  // Light on a receiver in means of the scene. Brighter ones take more rays in proportion: so much
+  // larger are their errors. None: all count alike.
+  std::function<float(ElementId)> brightness;
   float feature_size = 0.f;  // of shadows in direct light that count; 0: all
   // Where it knows a receiving cluster, a link's weight counts where the cluster is seen from the
   // link's direction, or in the hidden rest when the source lies inside the cluster. Null: on all
