@@ -19,8 +19,7 @@ constexpr float kErrorOfPlainReading = 0.05f;
 constexpr float kLeastReading = 1.f / 32.f, kMostReading = 8.f;
 // Of an emitter that a sensor sees through a small opening, few rays would meet anything.
 constexpr int kSensorShadowRays = 32, kFewestSensorShadowRays = 8;
-constexpr int kSensorPenumbraRays = 512, kFewestSensorPenumbraRays = 32;
-constexpr int kMostSensorPenumbraRays = 1024;
+constexpr int kSensorPenumbraRays = 1024, kFewestSensorPenumbraRays = 32;
 // Of a bright cell: rays from so many times as far end nearby.
 constexpr float kMostTimesAsFar = 16.f;
 // A bright place takes at most so many times the rays.
@@ -141,8 +140,9 @@ ReadOptions sensor_reading(const SolverState& state) {
   options.direct.shadow_rays =
       std::clamp(static_cast<int>(std::sqrt(more) * static_cast<float>(kSensorShadowRays)),
                  kFewestSensorShadowRays, kSensorShadowRays);
-  options.direct.penumbra_rays =
-      std::min(rays(kSensorPenumbraRays, kFewestSensorPenumbraRays), kMostSensorPenumbraRays);
+  const float fewer = std::min(1.f, more * std::sqrt(more));
+  options.direct.penumbra_rays = std::max(
+      kFewestSensorPenumbraRays, static_cast<int>(fewer * static_cast<float>(kSensorPenumbraRays)));
   return options;
 }
 
