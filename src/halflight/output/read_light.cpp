@@ -1,5 +1,7 @@
 #include "halflight/output/read_light.h"
 
+#include <bit>
+
 #include "halflight/base/parallel.h"
 #include "halflight/rays/adaptive_hemisphere.h"
 #include "halflight/rays/sampling.h"
@@ -200,6 +202,12 @@ float SolutionReader::times_the_rays(const Rgb& indirect) const {
                   kMostTimesTheRays);
 }
 
+std::uint64_t SolutionReader::seed_of(const Vec3& x) const {
+  if (!options_.own_noise) return 0;
+  return hash(std::bit_cast<std::uint32_t>(x.x), std::bit_cast<std::uint32_t>(x.y),
+              std::bit_cast<std::uint32_t>(x.z));
+}
+
 int SolutionReader::gather_rays() const {
   // Points in the air lie in no cell.
   return options_.gather_rays > 0 ? options_.gather_rays : kMeshReading.gather_rays;
@@ -217,6 +225,7 @@ Rgb SolutionReader::gather(const Vec3& x, const Vec3& n, int rays) const {
   const World& world = *state_->world;
   const Frame frame = Frame::from_normal(n);
   const Vec3 from = world.rays.lift(x, n);
+  const std::uint64_t own = seed_of(x);
   std::uint32_t index = 0;
   const Rgb gathered =
       adaptive_cosine_mean(rays, Vec2(0.5f), [&](const Vec3& w, float) -> SeenLight {
@@ -225,17 +234,17 @@ Rgb SolutionReader::gather(const Vec3& x, const Vec3& n, int rays) const {
         if (!hit) return Rgb(0.f);
         const ElementId leaf = state_->tree.leaf_hit(*hit);
         if (leaf.valid() && is_near(hit->distance, leaf))
-          return {reflected_radiosity_by_path(*hit, ray), reflected_radiosity(*hit, leaf)};
+          return {reflected_radiosity_by_path(*hit, PathSampler(own, ray)),
+                  reflected_radiosity(*hit, leaf)};
         if (leaf.valid() && is_bright_[leaf] != 0) return Rgb(0.f);
         return reflected_radiosity(*hit, leaf);
       });
   return gathered + bright_.irradiance(x, n, bright_options(options_.direct, rays));
 }
 
-Rgb SolutionReader::reflected_radiosity_by_path(const RayHit& hit, std::uint32_t ray) const {
+Rgb SolutionReader::reflected_radiosity_by_path(const RayHit& hit, PathSampler sampler) const {
   const World& world = *state_->world;
   const SurfacePoint y = surface_point(world.geometry, hit);
-  PathSampler sampler(0, ray);
   return reflectance_at(world.scene, world.geometry, hit.triangle, hit.barycentric) *
          paths_.irradiance_by_one_path(y.position, y.normal, sampler,
                                        [&](const RayHit& next) -> std::optional<Rgb> {

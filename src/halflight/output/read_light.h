@@ -24,6 +24,9 @@ struct ReadOptions {
   // Places brighter than the scene's mean take more rays, in proportion: so much larger are their
   // errors.
   bool more_where_bright = false;
+  // Paths have noise of their own at every place, which averages out over places. Of neighbours in
+  // a picture or a mesh it would show: there all err alike.
+  bool own_noise = true;
   DirectLightOptions direct;
 };
 
@@ -32,9 +35,11 @@ struct ReadOptions {
 inline constexpr ReadOptions kMeshReading{
     .gather_rays = 196,
     .near_hits = 0.f,
+    .own_noise = false,
     .direct = {.shadow_rays = 8, .penumbra_rays = 24, .largest_group_share = 0.03f}};
 inline constexpr ReadOptions kPictureReading{
     .gather_rays = 256,
+    .own_noise = false,
     .direct = {.shadow_rays = 8, .penumbra_rays = 48, .largest_group_share = 0.03f}};
 
 // Length of edges that a lit mesh need not split: half the smallest feature size of any place.
@@ -88,7 +93,9 @@ class SolutionReader {
   Rgb gather(const Vec3& x, const Vec3& n, int rays) const;
   Rgb gather(const ReadingPoint& point) const;
   // By a path that ends where cells are far enough away.
-  Rgb reflected_radiosity_by_path(const RayHit& hit, std::uint32_t ray) const;
+  Rgb reflected_radiosity_by_path(const RayHit& hit, PathSampler sampler) const;
+  // Of paths that go on from the gather of a place.
+  std::uint64_t seed_of(const Vec3& x) const;
 
   const SolverState* state_;
   ReadOptions options_;

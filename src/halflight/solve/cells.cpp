@@ -181,22 +181,6 @@ void evaluate_material(SolverState& state, ElementId cell) {
   state.exitance[cell] = is_back(side) && !m.double_sided ? Rgb(0.f) : kPi * weight * emission;
 }
 
-float brightness(const SolverState& state, ElementId e, float mean_irradiance) {
-  if (!(mean_irradiance > 0.f)) return 0.f;
-  float power = 0.f, area = 0.f;
-  std::vector<ElementId> open{e};
-  while (!open.empty()) {
-    const ElementId at = open.back();
-    open.pop_back();
-    for (const ElementId child : state.tree[at].children()) open.push_back(child);
-    if (!state.tree[at].is_leaf_cell()) continue;
-    const float light = std::max(average(state.irradiance[at]), average(state.given_light[at]));
-    power += state.tree[at].area * light;
-    area += state.tree[at].area;
-  }
-  return area > 0.f ? power / (area * mean_irradiance) : 0.f;
-}
-
 void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   const std::size_t n = state.tree.size();
   state.opacity.resize(n);
@@ -250,6 +234,23 @@ void give_light_to_side(SolverState& state, ElementId side, const Rgb& of_emitte
   }
 }
 
+// Light on an element as far as it is known, in means of the scene; of a cluster, of its cells by
+// area.
+float brightness(const SolverState& state, ElementId e, float mean_irradiance) {
+  float power = 0.f, area = 0.f;
+  std::vector<ElementId> open{e};
+  while (!open.empty()) {
+    const ElementId at = open.back();
+    open.pop_back();
+    for (const ElementId child : state.tree[at].children()) open.push_back(child);
+    if (!state.tree[at].is_leaf_cell()) continue;
+    const float light = std::max(average(state.irradiance[at]), average(state.given_light[at]));
+    power += state.tree[at].area * light;
+    area += state.tree[at].area;
+  }
+  return area > 0.f ? power / (area * mean_irradiance) : 0.f;
+}
+
 }  // namespace
 
 std::vector<ElementId> receivers_of(const SolverState& state, std::vector<ElementId> below) {
@@ -276,7 +277,7 @@ void limit_receivers(SolverState& state, std::size_t most) {
   }
 }
 
-SampledLinkOptions sampled_link_options(const SolverState& state) {
+SampledLinkOptions sampled_link_options(const SolverState& state, double received) {
   SampledLinkOptions options;
   options.inside = state.inside.get();
   const float more =
@@ -285,21 +286,24 @@ SampledLinkOptions sampled_link_options(const SolverState& state) {
   options.rays_per_cluster = static_cast<int>(more * static_cast<float>(options.rays_per_cluster));
   options.shadow_rays_per_cluster =
       static_cast<int>(std::min(1.f, more) * static_cast<float>(options.shadow_rays_per_cluster));
-  options.area_of_all_rays = kAreaOfAllRays * state.tree[state.tree.root()].area;
+  const float area = state.tree[state.tree.root()].area;
+  options.area_of_all_rays = kAreaOfAllRays * area;
+  if (received > 0.0)
+    options.brightness = [&state, mean = static_cast<float>(received) / area](ElementId e) {
+      return brightness(state, e, mean);
+    };
   return options;
 }
 
-void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& receivers) {
+void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& receivers,
+                            const SampledLinkOptions& options_of_all) {
   const ClusterVisibility* inside = state.inside.get();
-  const SampledLinkOptions options_of_all = sampled_link_options(state);
-  const float mean = mean_irradiance(state);
   parallel_for(receivers.size(), 16, [&](std::size_t i) {
     const ElementTree& tree = state.tree;
     const ElementId receiver = receivers[i];
     if (!tree[receiver].is_cluster()) return;
     SampledLinkOptions options = options_of_all;
     options.feature_size = state.feature_sizes[receiver];
-    options.brightness = [&](ElementId e) { return brightness(state, e, mean); };
     const DirectLight light =
         sample_direct_light(tree, *state.visibility, *state.emitters, receiver, options);
     if (inside && inside->knows(receiver)) {

@@ -17,10 +17,6 @@ float smallest_cell(const SolverState& state, ElementId cell);
 // Mean reflectance and exitance of a cell, textures sampled over its area.
 void evaluate_material(SolverState& state, ElementId cell);
 
-// Light on an element as far as it is known, in means of the scene; of a cluster, of its cells by
-// area.
-float brightness(const SolverState& state, ElementId e, float mean_irradiance);
-
 // Gives new children the light of their split parent and their own material.
 void inherit(SolverState& state, const std::vector<ElementId>& split_cells);
 
@@ -31,11 +27,13 @@ std::vector<ElementId> receivers_of(const SolverState& state, std::vector<Elemen
 void limit_receivers(SolverState& state, std::size_t most);
 
 // How receivers look around in this round.
-SampledLinkOptions sampled_link_options(const SolverState& state);
+// `received`: by all cells so far, W; bright receivers then take more rays.
+SampledLinkOptions sampled_link_options(const SolverState& state, double received = 0.0);
 
 // Evaluates the light that sampled links do not carry on the cells of receiving clusters, by one
 // directional irradiance for each cluster. Clusters that hold emitters are left out.
-void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& receivers);
+void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& receivers,
+                            const SampledLinkOptions& options_of_all);
 
 // Power that all leaf cells receive, W.
 double received_power(const SolverState& state);

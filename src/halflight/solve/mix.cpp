@@ -44,7 +44,7 @@ GroupLight light_of_one(SolverState& state) {
   if (state.emitters) {
     std::vector<ElementId> receivers = receivers_of(state, {state.tree.root()});
     std::erase_if(receivers, [&](ElementId e) { return state.sampled[e] == 0; });
-    give_light_to_clusters(state, receivers);
+    give_light_to_clusters(state, receivers, sampled_link_options(state));
   }
   update_given_light(state, kInfinity);  // splits nothing
   sweep(state);

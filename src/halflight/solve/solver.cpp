@@ -388,9 +388,7 @@ void sample_receivers(SolverState& state, std::size_t k, double power, Iteration
   const auto first = waiting.end() - static_cast<std::ptrdiff_t>(std::min(k, waiting.size()));
   const std::vector<ElementId> receivers(first, waiting.end());
   waiting.erase(first, waiting.end());
-  SampledLinkOptions options = sampled_link_options(state);
-  const float mean = mean_irradiance(state);
-  options.brightness = [&state, mean](ElementId e) { return brightness(state, e, mean); };
+  SampledLinkOptions options = sampled_link_options(state, power);
   const float share = share_of_rays_within(state, receivers, options);
   if (share < 1.f) {
     state.schedule.short_of_memory = 1;
@@ -405,7 +403,7 @@ void sample_receivers(SolverState& state, std::size_t k, double power, Iteration
         static_cast<int>(share * static_cast<float>(options.rays_per_cluster));
   }
   hand_over(state, receivers);
-  give_light_to_clusters(state, receivers);
+  give_light_to_clusters(state, receivers, sampled_link_options(state, power));
   update_given_light(state, record.irradiance_threshold, receivers, power);
   const std::vector<ElementId> leaves = receivers_of(state, receivers);
   state.sampled_links.append(
