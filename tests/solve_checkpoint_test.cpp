@@ -293,6 +293,39 @@ TEST(Settings, AreTheSameAfterBeingText) {
   EXPECT_EQ(difference(options, SolveOptions()), "feature-size is 0.1 there and -1 here");
 }
 
+TEST(Settings, OfPartsAndViewsAreTheSameAfterBeingText) {
+  SolveOptions options;
+  options.feature_size = 0.1f;
+  options.feature_size_rules = {{"Floor*", "", 0.02f}, {"", "a \"desk\"", 0.f}};
+  ViewOfInterest view{PlacedCamera(), 640, 360};
+  view.camera.position = {1.f, -2.5f, 1.f / 3.f};
+  options.importance = view;
+  options.pixels = PixelFeatureSize{view, 12.f};
+  const std::string text = to_text(options);
+  const auto read = parse_settings(text);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(to_text(*read), text);
+  ASSERT_EQ(read->feature_size_rules.size(), 2u);
+  EXPECT_EQ(read->feature_size_rules[1].node, "a \"desk\"");
+  EXPECT_EQ(read->importance->camera.position, view.camera.position);
+  EXPECT_EQ(read->pixels->view.height, 360);
+  EXPECT_EQ(read->pixels->pixels, 12.f);
+  const auto with = [&](std::string_view from, std::string_view to) {
+    std::string changed = text;
+    const std::size_t at = changed.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return changed.replace(at, from.size(), to);
+  };
+  EXPECT_FALSE(parse_settings(with("0.019999", "-0.019999")));  // a rule's size
+  EXPECT_FALSE(parse_settings(with("\"Floor*\"", "7")));
+  EXPECT_FALSE(parse_settings(with("12.0", "0")));
+  EXPECT_FALSE(parse_settings(with("-2.5", "1e99")));  // more than a float holds
+  EXPECT_FALSE(parse_settings(with("-2.5", "true")));
+  EXPECT_FALSE(parse_settings(with("640", "0")));
+  EXPECT_FALSE(parse_settings(with("360", "1e9")));
+  EXPECT_FALSE(parse_settings(with("importance [", "importance [[")));
+}
+
 TEST(Settings, NonsenseIsRefused) {
   const std::string text = to_text(resolved({}, World(Scene())));
   EXPECT_TRUE(parse_settings(text));
