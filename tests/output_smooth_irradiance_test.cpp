@@ -67,6 +67,18 @@ TEST(SmoothIrradiance, MakesNoOvershootAtAnEdge) {
   });
 }
 
+// Where a slope gets steeper, the gentle side knows nothing of it yet.
+TEST(SmoothIrradiance, TakesTheGentlerSlopeAtABend) {
+  const auto light = [](float x) { return x < 2.f ? 1.f + 0.1f * x : 1.2f + 4.f * (x - 2.f); };
+  const SolverState state = floor_with([&](const Vec3& p) { return light(p.x); });
+  const SmoothIrradiance smooth(state);
+  for_points_of_the_floor(state, [&](ElementId leaf, const Vec3& p) {
+    const float size = state.tree.cell_size(leaf);
+    EXPECT_GE(smooth.at(leaf, p).g, light(p.x - size) - 1e-3f) << p.x;
+    EXPECT_LE(smooth.at(leaf, p).g, light(p.x + size) + 1e-3f) << p.x;
+  });
+}
+
 // Cells of independent noise whose variance is known; the floor's light is 3 +- 1 along x.
 TEST(SmoothIrradiance, LeavesOutNoiseAndKeepsEdges) {
   constexpr float kNoise = 0.2f;
