@@ -262,5 +262,22 @@ TEST(PathTracer, SensorsGiveTheSameBytesForAnyThreadCount) {
   }
 }
 
+// Each path asks one of them: what the other gives must not be lost.
+TEST(PathTracer, TwoLampsGiveTheSumOfTheirLight) {
+  QuadScene quads;
+  quads.quad({0, 0, 4}, {4, 0, 0}, {0, 0, -4}, quads.material(0.f));
+  Light lamp;
+  const Vec3 p(2.f, 0.f, 1.5f);
+  float expected = 0.f;
+  for (const auto& [intensity, place] :
+       {std::pair(100.f, Vec3(1, 2, 1)), std::pair(30.f, Vec3(3, 1, 3))}) {
+    lamp.intensity = Rgb(intensity);
+    quads.light_shining_down(lamp, place);
+    const float distance = glm::distance(p, place);
+    expected += intensity * place.y / (distance * distance * distance);
+  }
+  EXPECT_NEAR(Traced(quads).irradiance(p, kUp), expected, 0.01f * expected);
+}
+
 }  // namespace
 }  // namespace halflight
