@@ -541,7 +541,7 @@ void make_fine_parts(SolverState& state, const ClusterTree* clusters) {
   if (state.options.intra_cluster)
     state.inside = std::make_shared<const ClusterVisibility>(
         state.tree, state.opacity,
-        choose_receivers(state.tree, {state.tree.root()}, state.feature_sizes));
+        choose_receivers(state.tree, {state.tree.root()}, state.receiver_sizes));
   state.fine_parts_made = true;
 }
 

@@ -412,8 +412,8 @@ Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptio
   };
   const auto first_of_rest = std::stable_partition(cut.begin(), cut.end(), alone);
   // Rays go where the light comes from. Light beyond all numbers has no share.
-  const auto share_of_rays = [&](float light) {
-    const float here = std::min(1.f, std::max(0.f, light / (kShareOfAllRays * expected)));
+  const auto share_of_rays = [&](float light, float most) {
+    const float here = std::min(most, std::max(0.f, light / (kShareOfAllRays * expected)));
     if (!(options.plain_light > 0.f)) return here;
     return std::max(here, std::min(kMostTimesRays, light / options.plain_light));
   };
@@ -424,7 +424,7 @@ Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptio
   float rest = expected;
   for (auto c = cut.begin(); c != first_of_rest; ++c) {
     rest -= c->expected;
-    const float share = share_of_rays(c->expected);
+    const float share = share_of_rays(c->expected, 1.f);
     sum += from_triangle(nodes_[c->node].first, x, n,
                          rays(std::min(share, std::sqrt(share)), options.shadow_rays),
                          rays(share, options.penumbra_rays), shift, options.feature_size);
@@ -433,7 +433,8 @@ Rgb EmitterTree::irradiance(const Vec3& x, const Vec3& n, const DirectLightOptio
     // In penumbrae half of them: what is mixed here is which emitters are seen.
     const int all =
         std::max(std::min(kRaysToJudgeBy, options.penumbra_rays), options.penumbra_rays / 2);
-    sum += from_some({first_of_rest, cut.end()}, x, n, rays(share_of_rays(rest), all), shift,
+    sum += from_some({first_of_rest, cut.end()}, x, n,
+                     rays(share_of_rays(rest, 1.f / kShareOfAllRays), all), shift,
                      options.feature_size);
   }
   return sum;
