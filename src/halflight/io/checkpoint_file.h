@@ -26,7 +26,7 @@
 namespace halflight {
 
 inline constexpr std::string_view kCheckpointMagic = "\x89HFLT\r\n\x1a";  // no text, no 7-bit file
-inline constexpr std::uint32_t kCheckpointVersion = 3;
+inline constexpr std::uint32_t kCheckpointVersion = 4;
 
 // Whether a file begins as a checkpoint does, whatever the rest.
 bool is_checkpoint(const std::filesystem::path& path);

@@ -13,8 +13,10 @@ constexpr std::uint32_t kPointsOfCell = 4;
 // Cells that receive much get more points: a share of all received power for each.
 constexpr double kShareOfPoint = 1e-4;
 constexpr std::uint32_t kMostPoints = 128;
-constexpr float kWeightOfHidden = 1e-3f;  // of a point that is seen from nowhere
-constexpr int kSkyRays = 16;              // of each point
+// Of a point that things stand close above. The less it counts, the more do neighbours in the nook
+// see too much: energy is made.
+constexpr float kWeightOfHidden = 0.3f;
+constexpr int kSkyRays = 16;  // of each point
 
 constexpr DirectLightOptions kCellDirectLight{
     .shadow_rays = 8, .penumbra_rays = 8, .largest_group_share = 0.05f, .smallest_angle = 0.01f};
@@ -39,7 +41,8 @@ constexpr std::uint64_t kPilot = 1, kKept = 2;
 
 struct GivenLight {
   Rgb mean{0.f};
-  Rgb outer{0.f};  // the part by punctual lights and the sky
+  Rgb outer{0.f};     // by punctual lights and the sky, on all of the cell
+  float share = 1.f;  // SolverState::given_share
   float deviation = 0.f;
 };
 
@@ -120,7 +123,7 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uin
     Rgb e = punctual_irradiance(*state.visibility, x, n, s) +
             sky_irradiance(*state.visibility, x, n, kSkyRays,
                            random_shift(hash(cell.value, k, stream)), s);
-    result.outer += weight * e;
+    result.outer += e;
     if (emitters)
       e += emitters->irradiance(x, n, direct, random_shift(hash(cell.value, samples_of(k), 13)));
     result.mean += weight * e;
@@ -129,7 +132,8 @@ GivenLight sample_given_light(const SolverState& state, ElementId cell, std::uin
   }
   if (count == 0.f) return result;
   result.mean /= weights;
-  result.outer /= weights;
+  result.outer /= count;
+  if (average(result.mean) > 0.f) result.share = sum / count / average(result.mean);
   if (count > 1.f)
     result.deviation = std::sqrt(std::max(0.f, (squares - sum * sum / count) / (count - 1.f)));
   return result;
@@ -187,6 +191,7 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
   state.reflectance.resize(n);
   state.exitance.resize(n);
   state.given_light.resize(n);
+  state.given_share.resize(n, 1.f);
   state.given_light_known.resize(n, 0);
   if (!state.outer_light.empty()) state.outer_light.resize(n);
   state.irradiance.resize(n);
@@ -201,6 +206,7 @@ void inherit(SolverState& state, const std::vector<ElementId>& split_cells) {
     for (const ElementId child : state.tree[parent].children()) {
       evaluate_material(state, child);
       state.given_light[child] = state.given_light[parent];
+      state.given_share[child] = state.given_share[parent];
       // Cells that are split for the next round of sampled links do with their parent's meanwhile.
       state.given_light_known[child] =
           state.sampled[parent] != 0 ? state.given_light_known[parent] : std::uint8_t{0};
@@ -229,6 +235,7 @@ void give_light_to_side(SolverState& state, ElementId side, const Rgb& of_emitte
     for (const ElementId child : state.tree[e].children()) open.push_back(child);
     if (!state.tree[e].is_leaf()) continue;
     state.given_light[e] = of_emitters + outer;
+    state.given_share[e] = 1.f;
     if (!state.outer_light.empty()) state.outer_light[e] = outer;
     state.given_light_known[e] = 1;
   }
@@ -359,6 +366,7 @@ void give_light_to_cells(SolverState& state, std::vector<ElementId> open,
       const GivenLight light =
           sample_given_light(state, e, points_of(state, e, total_power), kKept, direct);
       state.given_light[e] = light.mean;
+      state.given_share[e] = light.share;
       if (!state.outer_light.empty()) state.outer_light[e] = light.outer;
       state.given_light_known[e] = 1;
     });

@@ -477,6 +477,18 @@ int expected_sweeps(const SolverState& state, const IterationBudget& budget) {
   return last != state.history.rend() ? last->sweeps : kFirstGuessOfSweeps;
 }
 
+// Of those that wait, until their rays are so many.
+std::size_t receivers_within(const SolverState& state, std::size_t links) {
+  const SampledLinkOptions options = sampled_link_options(state, received_power(state));
+  const std::vector<ElementId>& waiting = state.schedule.receivers;
+  std::size_t rays = 0;
+  for (std::size_t k = 0; k < waiting.size(); ++k) {
+    rays += static_cast<std::size_t>(rays_of(state.tree, waiting[waiting.size() - 1 - k], options));
+    if (rays > links) return k;
+  }
+  return waiting.size();
+}
+
 // Links to refine, pairs to shape or receivers to sample that the budget has room for; at least 1.
 std::size_t units_within(const SolverState& state, const IterationBudget& budget, std::size_t size,
                          int sweeps) {
@@ -485,7 +497,7 @@ std::size_t units_within(const SolverState& state, const IterationBudget& budget
   if (stage == Stage::sample && state.schedule.round == 1 && state.links.size() == 0)
     return kUnlimited;
   const std::size_t links = stage == Stage::sample && budget.links < kUnlimited
-                                ? budget.links / sampled_link_options(state).rays_per_cell
+                                ? receivers_within(state, budget.links)
                                 : budget.links;
   const std::size_t in_time = std::isfinite(budget.seconds)
                                   ? state.costs.affordable(stage, budget.seconds, size, sweeps)
@@ -605,6 +617,7 @@ SolverState make_state(const std::shared_ptr<const World>& world,
   state.reflectance.resize(n);
   state.exitance.resize(n);
   state.given_light.resize(n, Rgb(0.f));
+  state.given_share.resize(n, 1.f);
   state.given_light_known.resize(n, 0);
   if (has_outer_light(*world)) state.outer_light.resize(n, Rgb(0.f));
   state.irradiance.resize(n, Rgb(0.f));
@@ -705,7 +718,8 @@ EnergyBalance energy_balance(const SolverState& state) {
     balance.emitted += area * state.exitance[e];
     if (!state.outer_light.empty())
       balance.emitted += area * state.opacity[e] * state.outer_light[e];
-    balance.absorbed += area * (Rgb(state.opacity[e]) - state.reflectance[e]) * state.irradiance[e];
+    const Rgb on_all = state.irradiance[e] - (1.f - state.given_share[e]) * state.given_light[e];
+    balance.absorbed += area * (Rgb(state.opacity[e]) - state.reflectance[e]) * on_all;
   }
   balance.escaped = balance.emitted - balance.absorbed;
   return balance;

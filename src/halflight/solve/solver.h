@@ -77,6 +77,9 @@ struct SolverState {
   // Irradiance of leaf cells that links do not carry: by punctual lights and the sky, and where
   // links are sampled by emitting surfaces too.
   IdVector<ElementId, Rgb> given_light{};
+  // What is given to all of a cell, as a share of that given to the part that lies open, which is
+  // what the cell is seen to reflect.
+  IdVector<ElementId, float> given_share{};
   IdVector<ElementId, std::uint8_t> given_light_known{};
   IdVector<ElementId, Rgb> outer_light{};  // its part by punctual lights and the sky; empty: none
   IdVector<ElementId, Rgb> irradiance{};   // E of cells, from all links above and at them

@@ -19,6 +19,7 @@ inline constexpr Range kShare{};
 // W/m2. Scenes shine with kMaxRadiance at most, and lamps count by the square of the distance.
 // Floats hold what comes of it by areas and weights.
 inline constexpr Range kLight{0.0, 1e24};
+inline constexpr Range kGivenShare{0.0, 1e6};
 inline constexpr Range kThreshold{0.0, double{std::numeric_limits<float>::max()}};
 inline constexpr Range kTolerance{1e-3, 1e3};
 inline constexpr Range kImportance{double{kLeastImportance}, 1.0};
@@ -27,6 +28,7 @@ inline constexpr Range kRounds{0.0, 64.0};
 inline constexpr Range kLevels{0.0, 64.0};
 inline constexpr Range kCount{0.0, 0x1p53};
 inline constexpr Range kCoarseness{1.0, 1e6};
+inline constexpr Range kReceiverScale{1.0, 1e12};
 inline constexpr Range kSweeps{0.0, double{kMostSweeps}};
 
 // visit(name, field) for lists of ids, link tables and the stage, visit(name, field, range) for
@@ -39,6 +41,7 @@ void for_each_field(State& state, const Visit& visit) {
   visit("exitance", state.exitance, kLight);
   visit("sampled", state.sampled, kRounds);
   visit("given light", state.given_light, kLight);
+  visit("given share", state.given_share, kGivenShare);
   visit("given light known", state.given_light_known, kShare);
   visit("outer light", state.outer_light, kLight);
   visit("irradiance", state.irradiance, kLight);
@@ -55,6 +58,7 @@ void for_each_field(State& state, const Visit& visit) {
   visit("receivers in all", state.schedule.receiver_total, kCount);
   visit("round", state.schedule.round, kRounds);
   visit("coarseness", state.schedule.coarseness, kCoarseness);
+  visit("receiver scale", state.schedule.receiver_scale, kReceiverScale);
   visit("short of memory", state.schedule.short_of_memory, kShare);
 }
 
