@@ -228,33 +228,25 @@ namespace {
 // All leaf cells of a side get the same.
 void give_light_to_side(SolverState& state, ElementId side, const Rgb& of_emitters,
                         const Rgb& outer) {
-  std::vector<ElementId> open{side};
-  while (!open.empty()) {
-    const ElementId e = open.back();
-    open.pop_back();
-    for (const ElementId child : state.tree[e].children()) open.push_back(child);
-    if (!state.tree[e].is_leaf()) continue;
+  for_all_below(state.tree, side, [&](ElementId e) {
+    if (!state.tree[e].is_leaf()) return;
     state.given_light[e] = of_emitters + outer;
     state.given_share[e] = 1.f;
     if (!state.outer_light.empty()) state.outer_light[e] = outer;
     state.given_light_known[e] = 1;
-  }
+  });
 }
 
 // Light on an element as far as it is known, in means of the scene; of a cluster, of its cells by
 // area.
 float brightness(const SolverState& state, ElementId e, float mean_irradiance) {
   float power = 0.f, area = 0.f;
-  std::vector<ElementId> open{e};
-  while (!open.empty()) {
-    const ElementId at = open.back();
-    open.pop_back();
-    for (const ElementId child : state.tree[at].children()) open.push_back(child);
-    if (!state.tree[at].is_leaf_cell()) continue;
+  for_all_below(state.tree, e, [&](ElementId at) {
+    if (!state.tree[at].is_leaf_cell()) return;
     const float light = std::max(average(state.irradiance[at]), average(state.given_light[at]));
     power += state.tree[at].area * light;
     area += state.tree[at].area;
-  }
+  });
   return area > 0.f ? power / (area * mean_irradiance) : 0.f;
 }
 
@@ -404,20 +396,16 @@ void update_given_light(SolverState& state, float irradiance_threshold) {
 void update_given_light(SolverState& state, float irradiance_threshold,
                         const std::vector<ElementId>& receivers, double total_power) {
   if (!wants_given_light(state)) return;
-  give_light_to_cells(
-      state,
-      parallel_collect<ElementId>(receivers.size(), 64,
-                                  [&](std::size_t i, std::vector<ElementId>& open) {
-                                    std::vector<ElementId> below{receivers[i]};
-                                    while (!below.empty()) {
-                                      const ElementId e = below.back();
-                                      below.pop_back();
-                                      if (lacks_given_light(state, e)) open.push_back(e);
-                                      for (const ElementId child : state.tree[e].children())
-                                        below.push_back(child);
-                                    }
-                                  }),
-      irradiance_threshold, total_power);
+  give_light_to_cells(state,
+                      parallel_collect<ElementId>(receivers.size(), 64,
+                                                  [&](std::size_t i, std::vector<ElementId>& open) {
+                                                    for_all_below(state.tree, receivers[i],
+                                                                  [&](ElementId e) {
+                                                                    if (lacks_given_light(state, e))
+                                                                      open.push_back(e);
+                                                                  });
+                                                  }),
+                      irradiance_threshold, total_power);
 }
 
 }  // namespace halflight

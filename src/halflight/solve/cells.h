@@ -9,6 +9,18 @@
 
 namespace halflight {
 
+// Visits an element and all below it, parents before their children.
+template <class Visit>
+void for_all_below(const ElementTree& tree, ElementId top, const Visit& visit) {
+  std::vector<ElementId> open{top};
+  while (!open.empty()) {
+    const ElementId e = open.back();
+    open.pop_back();
+    visit(e);
+    for (const ElementId child : tree[e].children()) open.push_back(child);
+  }
+}
+
 // Metres: of all cells, whatever the feature size.
 float finest_cell(const SolverState& state);
 // A cell is not split below this size, metres: half its feature size.
@@ -31,7 +43,7 @@ void limit_receivers(SolverState& state, std::size_t most);
 SampledLinkOptions sampled_link_options(const SolverState& state, double received = 0.0);
 
 // Evaluates the light that sampled links do not carry on the cells of receiving clusters, by one
-// directional irradiance for each cluster. Clusters that hold emitters are left out.
+// directional irradiance for each cluster.
 void give_light_to_clusters(SolverState& state, const std::vector<ElementId>& receivers,
                             const SampledLinkOptions& options_of_all);
 

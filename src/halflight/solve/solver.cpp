@@ -321,17 +321,6 @@ void shape_elements(SolverState& state, std::size_t k, const Progress& progress,
   if (todo.pairs.empty()) todo.stage = Stage::sample;
 }
 
-template <class Visit>
-void for_all_below(const ElementTree& tree, ElementId top, const Visit& visit) {
-  std::vector<ElementId> open{top};
-  while (!open.empty()) {
-    const ElementId e = open.back();
-    open.pop_back();
-    visit(e);
-    for (const ElementId child : tree[e].children()) open.push_back(child);
-  }
-}
-
 // From now on these elements and all below them receive by sampled links, and light from emitters
 // is read exactly on each.
 void hand_over(SolverState& state, const std::vector<ElementId>& receivers) {
@@ -403,7 +392,7 @@ void sample_receivers(SolverState& state, std::size_t k, double power, Iteration
         static_cast<int>(share * static_cast<float>(options.rays_per_cluster));
   }
   hand_over(state, receivers);
-  give_light_to_clusters(state, receivers, sampled_link_options(state, power));
+  give_light_to_clusters(state, receivers, options);
   update_given_light(state, record.irradiance_threshold, receivers, power);
   const std::vector<ElementId> leaves = receivers_of(state, receivers);
   state.sampled_links.append(
