@@ -33,7 +33,8 @@ longest() {  # bytes of an input
 }
 
 fuzz() {  # TARGET
-  local target=$1 dir places=() options=() seeds="$build/logs/$target.seeds"
+  local target=$1 dir places=() options=()
+  local seeds="$build/logs/$target.seeds"
   mkdir -p "$build/corpus/$target" "$build/findings/$target"
   for dir in "fuzz/seeds/$target" "fuzz/regressions/$target" "$build/seeds/$target"; do
     [ ! -d "$dir" ] || places+=("$dir")
@@ -63,15 +64,18 @@ report() {
   echo "|---|--:|--:|--:|--:|--:|--:|"
   local target sum=0 failed=0
   for target in "$@"; do
-    local log="$build/logs/$target" last runs rate findings
-    last=$(grep -E '^#[0-9]+.* cov: ' "$log" | tail -n 1 || true)
+    local log="$build/logs/$target" last runs rate found
+    last=$(grep -aE '^#[0-9]+.* cov: ' "$log" | tail -n 1 || true)
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
     rate=$(sed -n 's/^stat::average_exec_per_sec: *//p' "$log")
-    findings=$(find "$build/findings/$target" -type f ! -name 'slow-unit-*' -newer "$started" | wc -l)
+    found=$(find "$build/findings/$target" -type f ! -name 'slow-unit-*' -newer "$started" | wc -l)
     # A target that ended without its statistics has not run.
-    [ -n "$runs" ] && [ "$findings" -eq 0 ] || failed=1
+    if [ -z "$runs" ] || [ "$found" -gt 0 ]; then
+      failed=1
+      { echo "$target:" && tail -n 40 "$log"; } >&2
+    fi
     number() { sed -n "s/.* $1: *\([0-9]*\).*/\1/p" <<<"$last"; }
-    echo "| $target | ${runs:--} | ${rate:--} | $(number cov) | $(number ft) | $(number corp) | $findings |"
+    echo "| $target | ${runs:--} | ${rate:--} | $(number cov) | $(number ft) | $(number corp) | $found |"
     sum=$((sum + ${runs:-0}))
   done
   echo "| all | $sum | | | | | |"
