@@ -32,6 +32,7 @@ constexpr float kFirstThreshold = 16.f;
 constexpr float kFirstError = 1.f;  // that a coarse beginning aims at
 // Elements that receive in the first coarse solution, and by what there are more in the next.
 constexpr std::size_t kCellsOfFirstGuess = 512;
+constexpr std::size_t kFewElements = 200'000;
 constexpr std::size_t kFirstReceivers = 4096, kMoreReceivers = 8;
 constexpr int kCoarseRounds = 3;        // at most
 constexpr double kShareOfCoarse = 0.1;  // of the work, roughly
@@ -417,17 +418,26 @@ bool another_coarse_round(const Schedule& todo) {
   return todo.receiver_scale > 1.f && todo.round < kCoarseRounds;
 }
 
+// For a smaller error than that of the links there are.
+void begin_finer_links(SolverState& state) {
+  state.schedule.irradiance_threshold = 0.f;
+  state.schedule.level = levels_of_links(state.options);
+  state.schedule.stage = state.options.links == LinkMaker::sampled ? Stage::shape : Stage::refine;
+}
+
 // After a coarse solution: another one of more receivers, or that which is asked for.
 void go_on_from_coarse(SolverState& state) {
   Schedule& todo = state.schedule;
-  todo.irradiance_threshold = 0.f;
   if (another_coarse_round(todo)) {
+    todo.irradiance_threshold = 0.f;
     todo.stage = Stage::sample;
     return;
   }
   todo.coarseness = 1.f;
+  begin_finer_links(state);
+  if (state.links.size() > 0 || levels_of_links(state.options) == 0) return;
   todo.level = 0;
-  todo.stage = levels_of_links(state.options) == 0 ? Stage::shape : Stage::refine;
+  todo.stage = Stage::refine;
 }
 
 // Without limit in portions all the same, to be able to stop.
@@ -516,7 +526,7 @@ void begin_stage(SolverState& state, bool in_short_iterations) {
       state.emitters =
           std::make_shared<EmitterTree>(*state.visibility, find_emitters(*state.world));
     ++todo.round;
-    if (todo.coarseness > 1.f)
+    if (todo.coarseness > 1.f && state.links.size() == 0)
       limit_receivers(state, most_coarse_receivers(todo.round));
     else
       todo.receiver_scale = 1.f;
@@ -551,21 +561,16 @@ bool lacks_fine_parts(const SolverState& state) {
   return state.schedule.coarseness == 1.f && !state.fine_parts_made;
 }
 
-// Light at first comes by sampled links alone, to few receivers; with refined ones that are to
-// stay, by these.
+// Light at first comes by few refined links; by sampled ones alone, to few receivers, where even
+// those few would be too many.
 void begin_coarsely(SolverState& state) {
   Schedule& todo = state.schedule;
   todo.coarseness = std::max(1.f, kFirstError / state.options.error);
-  if (todo.coarseness == 1.f || state.options.links == LinkMaker::refined) return;
+  if (todo.coarseness == 1.f || state.options.links == LinkMaker::refined ||
+      state.tree.size() <= kFewElements)
+    return;
   todo.stage = Stage::sample;
   todo.level = state.options.levels - 1;
-}
-
-// For a smaller error than that of the links there are.
-void begin_finer_links(SolverState& state) {
-  state.schedule.irradiance_threshold = 0.f;
-  state.schedule.level = levels_of_links(state.options);
-  state.schedule.stage = state.options.links == LinkMaker::sampled ? Stage::shape : Stage::refine;
 }
 
 }  // namespace
@@ -621,8 +626,9 @@ SolverState make_state(const std::shared_ptr<const World>& world,
   state.schedule.pairs = {{state.tree.root(), state.tree.root()}};
   if (levels_of_links(state.options) == 0) state.schedule.stage = Stage::shape;
   if (beginning == Beginning::coarse) begin_coarsely(state);
-  state.fine_parts_made =
-      state.schedule.stage != Stage::sample || state.options.visibility == VisibilityMode::average;
+  state.fine_parts_made = state.schedule.coarseness == 1.f ||
+                          options.links == LinkMaker::refined ||
+                          options.visibility == VisibilityMode::average;
   if (state.fine_parts_made) make_fine_parts(state, &clusters);
   return state;
 }
