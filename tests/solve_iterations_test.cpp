@@ -199,15 +199,17 @@ TEST(EstimatedError, FallsWhenASmallerOneIsAimedAt) {
   EXPECT_NEAR(average(balance.absorbed) / average(balance.emitted), 1.f, 0.02f);
 }
 
-// Clutter of more receivers than the first coarse solution has.
-std::shared_ptr<const World> cluttered_room() {
-  return make_world(loose_triangles_scene({.count = 20'000, .size = 0.05f}));
+// Clutter of more receivers than a coarse solution has; of few elements or many.
+std::shared_ptr<const World> cluttered_room(int triangles) {
+  const float size = std::sqrt(50.f / static_cast<float>(triangles));
+  return make_world(loose_triangles_scene({.count = triangles, .size = size}));
 }
 constexpr float kFeatureOfClutter = 0.1f;
+constexpr int kFew = 20'000, kMany = 120'000;
 
-TEST(CoarseBeginning, FirstIterationLightsAllHoweverShort) {
+TEST(CoarseRound, FirstIterationLightsAllHoweverShort) {
   SolverState state =
-      make_state(cluttered_room(), {.feature_size = kFeatureOfClutter}, Beginning::coarse);
+      make_state(cluttered_room(kMany), {.feature_size = kFeatureOfClutter}, Beginning::coarse);
   advance(state, Progress(), {.links = 1});
   EXPECT_TRUE(state.schedule.receivers.empty());
   EXPECT_GT(state.schedule.receiver_scale, 1.f);
@@ -217,8 +219,10 @@ TEST(CoarseBeginning, FirstIterationLightsAllHoweverShort) {
   EXPECT_NEAR(first, mean_irradiance(state), 0.2f * mean_irradiance(state));
 }
 
-TEST(CoarseBeginning, EndsWhereADirectSolveDoes) {
-  const auto world = cluttered_room();
+class CoarseBeginning : public ::testing::TestWithParam<int> {};
+
+TEST_P(CoarseBeginning, EndsWhereADirectSolveDoes) {
+  const auto world = cluttered_room(GetParam());
   const SolveOptions options{.feature_size = kFeatureOfClutter};
   const auto solve = [&](Beginning beginning) {
     SolverState state = make_state(world, options, beginning);
@@ -228,16 +232,18 @@ TEST(CoarseBeginning, EndsWhereADirectSolveDoes) {
   const SolverState coarsely = solve(Beginning::coarse), direct = solve(Beginning::as_asked);
   EXPECT_TRUE(coarsely.fine_parts_made);
   EXPECT_EQ(coarsely.schedule.receiver_scale, 1.f);
+  EXPECT_NEAR(mean_irradiance(coarsely), mean_irradiance(direct), 0.01f * mean_irradiance(direct));
   const auto points = scatter_points(direct, 400);
   EXPECT_LT(relative_rms(testing::read_irradiance(coarsely, points, kMeshReading),
                          testing::read_irradiance(direct, points, kMeshReading)),
-            0.04f);  // two solutions of 2 % each
+            0.07f);  // two solutions of 5 % each, by paths
 }
+INSTANTIATE_TEST_SUITE_P(Sizes, CoarseBeginning, ::testing::Values(kFew, kMany));
 
 // What is found anew for the receivers of an iteration is what is found anew for all.
-TEST(CoarseBeginning, RowLimitsOfSomeAreThoseOfAll) {
+TEST(CoarseRound, RowLimitsOfSomeAreThoseOfAll) {
   SolverState state =
-      make_state(cluttered_room(), {.feature_size = kFeatureOfClutter}, Beginning::coarse);
+      make_state(cluttered_room(kMany), {.feature_size = kFeatureOfClutter}, Beginning::coarse);
   while (state.schedule.round < 2 || state.schedule.receivers.empty())
     advance(state, Progress(), {.links = 20'000});
   advance(state, Progress(), {.links = 20'000});

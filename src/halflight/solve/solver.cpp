@@ -29,19 +29,18 @@ constexpr float kThresholdRatio = 4.f;  // between levels
 constexpr float kFeatureRatio = 2.f;    // of feature sizes
 // Of the first iteration to the first level, when iterations are to be short.
 constexpr float kFirstThreshold = 16.f;
-constexpr float kFirstError = 1.f;  // that a coarse beginning aims at
-// Elements that receive in the first coarse solution, and by what there are more in the next.
+constexpr float kFirstError = 1.f;              // that a coarse beginning aims at
+constexpr std::size_t kCoarseReceivers = 8192;  // at most, but for emitters and cells
+constexpr std::size_t kManyElements = 200'000;  // that get sampled links before refined ones
 constexpr std::size_t kCellsOfFirstGuess = 512;
-constexpr std::size_t kFewElements = 200'000;
-constexpr std::size_t kFirstReceivers = 4096, kMoreReceivers = 8;
-constexpr int kCoarseRounds = 3;        // at most
 constexpr double kShareOfCoarse = 0.1;  // of the work, roughly
 constexpr float kBlindCells = 8.f;      // RefineOptions::largest_blind_cell in feature sizes
 constexpr float kLeastTolerance = 0.15f;
 constexpr int kSweepsOfShortIteration = 2;
-constexpr int kSweepsOfFirstResult = 4;  // a few bounces
-constexpr double kLittleChangeOfCoarse = 0.02;
-constexpr double kFinePartsOfElement = 3e-6;  // seconds, before it is known
+constexpr int kSweepsOfFirstResult = 4;          // a few bounces
+constexpr int kMostSweepsOfShortIteration = 16;  // where nothing but sweeps is left to do
+constexpr double kLittleChangeForNow = 0.005;    // where finer links are to come
+constexpr double kFinePartsOfElement = 3e-6;     // seconds, before it is known
 constexpr int kFirstGuessOfSweeps = 10;
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 constexpr float kFewestRays = 6.f;  // of a cell; its refined links serve better
@@ -307,6 +306,8 @@ void refine_links(SolverState& state, std::size_t k, const Progress& progress,
   todo.irradiance_threshold = 0.f;
   if (++todo.level < levels_of_links(state.options)) return;
   todo.stage = state.options.links == LinkMaker::sampled ? Stage::shape : Stage::converge;
+  // These were only for the elements that are to come.
+  if (todo.coarseness > 1.f && todo.round > 0) todo.coarseness = 1.f;
 }
 
 // Elements for the last level, by k of the links that would not hold there.
@@ -414,10 +415,6 @@ void forget_earlier_rounds(SolverState& state) {
   state.sampled_links.append(links);
 }
 
-bool another_coarse_round(const Schedule& todo) {
-  return todo.receiver_scale > 1.f && todo.round < kCoarseRounds;
-}
-
 // For a smaller error than that of the links there are.
 void begin_finer_links(SolverState& state) {
   state.schedule.irradiance_threshold = 0.f;
@@ -425,17 +422,15 @@ void begin_finer_links(SolverState& state) {
   state.schedule.stage = state.options.links == LinkMaker::sampled ? Stage::shape : Stage::refine;
 }
 
-// After a coarse solution: another one of more receivers, or that which is asked for.
+// To the solution that is asked for: refined links tell which elements it needs, those of a coarse
+// solution do.
 void go_on_from_coarse(SolverState& state) {
   Schedule& todo = state.schedule;
-  if (another_coarse_round(todo)) {
-    todo.irradiance_threshold = 0.f;
-    todo.stage = Stage::sample;
-    return;
+  if (state.links.size() > 0 || levels_of_links(state.options) == 0) {
+    todo.coarseness = 1.f;
+    return begin_finer_links(state);
   }
-  todo.coarseness = 1.f;
-  begin_finer_links(state);
-  if (state.links.size() > 0 || levels_of_links(state.options) == 0) return;
+  todo.irradiance_threshold = 0.f;
   todo.level = 0;
   todo.stage = Stage::refine;
 }
@@ -455,8 +450,6 @@ void sample_links(SolverState& state, std::size_t k, const Progress& progress,
   if (!todo.receivers.empty()) return;
   if (todo.round > 1 && todo.short_of_memory == 0) forget_earlier_rounds(state);
   todo.stage = Stage::converge;
-  // The next round brings sweeps enough.
-  if (todo.coarseness > 1.f && another_coarse_round(todo)) go_on_from_coarse(state);
 }
 
 // All receive by sampled links already, and what is refined only shapes elements.
@@ -464,9 +457,23 @@ bool only_shapes(const SolverState& state, Stage stage) {
   return stage == Stage::shape || (stage == Stage::refine && state.schedule.round > 0);
 }
 
+bool finer_links_to_come(const Schedule& todo) {
+  return todo.coarseness > 1.f || todo.stage != Stage::converge;
+}
+
+// As many as there is time for, as they get on the better the more of them follow each other.
+int sweeps_within(const SolverState& state, double seconds) {
+  const double each =
+      state.costs.predict(Stage::converge, 0, state.tree.size() + state.link_total(), 1);
+  const double most = std::clamp(seconds / std::max(each, 1e-9), double{kSweepsOfShortIteration},
+                                 double{kMostSweepsOfShortIteration});
+  return static_cast<int>(most);
+}
+
 int expected_sweeps(const SolverState& state, const IterationBudget& budget) {
   if (only_shapes(state, state.schedule.stage)) return 0;
   if (budget.limited()) {
+    if (state.schedule.stage == Stage::converge) return sweeps_within(state, budget.seconds);
     if (state.schedule.stage == Stage::sample && state.history.empty()) return kSweepsOfFirstResult;
     const bool among_many = state.schedule.stage == Stage::sample && state.schedule.round > 1;
     return among_many ? 1 : kSweepsOfShortIteration;
@@ -504,12 +511,6 @@ std::size_t units_within(const SolverState& state, const IterationBudget& budget
   return std::max<std::size_t>(1, std::min(links, in_time));
 }
 
-std::size_t most_coarse_receivers(int round) {
-  std::size_t most = kFirstReceivers;
-  for (int r = 1; r < round; ++r) most *= kMoreReceivers;
-  return most;
-}
-
 // What a stage needs to begin with.
 void begin_stage(SolverState& state, bool in_short_iterations) {
   Schedule& todo = state.schedule;
@@ -526,8 +527,8 @@ void begin_stage(SolverState& state, bool in_short_iterations) {
       state.emitters =
           std::make_shared<EmitterTree>(*state.visibility, find_emitters(*state.world));
     ++todo.round;
-    if (todo.coarseness > 1.f && state.links.size() == 0)
-      limit_receivers(state, most_coarse_receivers(todo.round));
+    if (todo.coarseness > 1.f)
+      limit_receivers(state, kCoarseReceivers);
     else
       todo.receiver_scale = 1.f;
     todo.receivers = receivers_of(state, {state.tree.root()});
@@ -561,13 +562,13 @@ bool lacks_fine_parts(const SolverState& state) {
   return state.schedule.coarseness == 1.f && !state.fine_parts_made;
 }
 
-// Light at first comes by few refined links; by sampled ones alone, to few receivers, where even
-// those few would be too many.
+// A coarse solution has few refined links, and sampled ones for few receivers. Small scenes are lit
+// sooner by the former, large ones by the latter.
 void begin_coarsely(SolverState& state) {
   Schedule& todo = state.schedule;
   todo.coarseness = std::max(1.f, kFirstError / state.options.error);
   if (todo.coarseness == 1.f || state.options.links == LinkMaker::refined ||
-      state.tree.size() <= kFewElements)
+      state.tree.size() < kManyElements)
     return;
   todo.stage = Stage::sample;
   todo.level = state.options.levels - 1;
@@ -626,8 +627,7 @@ SolverState make_state(const std::shared_ptr<const World>& world,
   state.schedule.pairs = {{state.tree.root(), state.tree.root()}};
   if (levels_of_links(state.options) == 0) state.schedule.stage = Stage::shape;
   if (beginning == Beginning::coarse) begin_coarsely(state);
-  state.fine_parts_made = state.schedule.coarseness == 1.f ||
-                          options.links == LinkMaker::refined ||
+  state.fine_parts_made = state.schedule.coarseness == 1.f || options.links == LinkMaker::refined ||
                           options.visibility == VisibilityMode::average;
   if (state.fine_parts_made) make_fine_parts(state, &clusters);
   return state;
@@ -673,7 +673,7 @@ void advance(SolverState& state, const Progress& progress, const IterationBudget
   Sweeps swept;
   if (!only_shapes(state, stage))
     swept = sweep(state, budget.limited() ? sweeps : kMostSweeps,
-                  todo.coarseness > 1.f ? kLittleChangeOfCoarse : kLittleChange);
+                  finer_links_to_come(todo) ? kLittleChangeForNow : kLittleChange);
   if (todo.stage == Stage::converge && (swept.converged || !budget.limited())) {
     todo.stage = Stage::done;
     if (todo.coarseness > 1.f) go_on_from_coarse(state);

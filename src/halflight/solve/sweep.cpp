@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "halflight/base/parallel.h"
+#include "halflight/solve/anderson.h"
 #include "halflight/transport/spherical_harmonics.h"
 
 namespace halflight {
@@ -382,6 +383,8 @@ void update_row_limits(SolverState& state, std::span<const ElementId> receivers)
 Sweeps sweep(SolverState& state, int most_sweeps, double largest_change) {
   SweepPlan plan(state);
   if (state.row_limits.size() != state.tree.size()) state.row_limits = find_row_limits(state, plan);
+  AndersonMixing acceleration;
+  const bool accelerated = state.options.memory == 0;  // it takes four vectors of all elements
   Sweeps done;
   while (done.count < most_sweeps && !done.converged) {
     plan.shown.update(state);
@@ -389,9 +392,10 @@ Sweeps sweep(SolverState& state, int most_sweeps, double largest_change) {
     push(state, plan);
     finish_leaves(state);
     const Change change = change_of_radiosity(state);
+    done.converged = change.absolute <= largest_change * change.reflected;
+    if (accelerated && !done.converged) acceleration.mix(state);
     pull(state);
     ++done.count;
-    done.converged = change.absolute <= largest_change * change.reflected;
   }
   return done;
 }
