@@ -136,14 +136,14 @@ TEST(LiveSides, CrateWithoutALidIsLitInside) {
   EXPECT_EQ(room.live_sides(kCrate).inside, 5);
 }
 
-// Five walls of a crate that stands on a floor of its own, `gap` above it.
-int live_insides_of_a_lid(float gap) {
+// Five walls of a crate, 0.5 m wide, that stand `gap` above the floor of a room.
+int live_insides_of_a_lid(float gap, float height = 0.5f) {
   testing::QuadScene quads;
   const MaterialId grey = quads.material(0.5f), lamp = quads.material(0.f, 10.f);
   quads.box({0, 0, 0}, {4, 3, 4}, grey, true);
   quads.quad({1.5f, 2.9f, 1.5f}, {1, 0, 0}, {0, 0, 1}, lamp);
   MeshParts lid;
-  append_box(lid[grey], {{1, gap, 1}, {1.5f, 0.5f, 1.5f}});
+  append_box(lid[grey], {{1, gap, 1}, {1.5f, gap + height, 1.5f}});
   Primitive& p = lid[grey];
   // Without the bottom: its triangles are those whose corners all lie at the gap's height.
   std::erase_if(p.triangles, [&](const auto& t) {
@@ -156,7 +156,8 @@ int live_insides_of_a_lid(float gap) {
   int insides = 0;
   for (std::size_t i = 0; i < surfaces.surfaces.size(); ++i) {
     const SurfaceId s(i);
-    if (surfaces[s].box.longest_side() < 0.9f && surfaces[s].box.upper.y < 1.f)
+    const Vec3 size = surfaces[s].box.upper - surfaces[s].box.lower;
+    if (std::max(size.x, size.z) < 0.9f && surfaces[s].box.upper.y < 2.8f)
       insides += live[side_of(s, true)] != 0;
   }
   return insides;
@@ -168,6 +169,12 @@ TEST(LiveSides, InsideOfACrateWithoutABottomIsSealedByTheFloor) {
 
 TEST(LiveSides, InsideOfACrateThatHangsOpenAboveTheFloorLives) {
   EXPECT_EQ(live_insides_of_a_lid(0.1f), 5);
+}
+
+// Larger than a quarter of the scene, like the blocks of the Cornell box.
+TEST(LiveSides, InsideOfATallBlockIsSealedByTheFloorButNotWhereLightCreepsUnderIt) {
+  EXPECT_EQ(live_insides_of_a_lid(0.f, 2.5f), 0);
+  EXPECT_EQ(live_insides_of_a_lid(0.01f, 2.5f), 5);
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ Scene small_office() {
 }
 
 // Rays of sampled links keep energy to 1 %. Refined links lose up to 2 % by their own errors, and
-// cells of 0.4 m make 2 % in the nooks between the small things of the office.
+// cells of 0.4 m make up to 3 % in the nooks between the small things of the office.
 struct ClosedRoom {
   const char* name;
   std::function<Scene()> build;
@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(
                    0.02f},
         ClosedRoom{"DoorwaySampled", [] { return doorway_scene(); }, 0.3f, LinkMaker::sampled},
         ClosedRoom{"BooksSampled", [] { return books_scene(); }, 0.4f, LinkMaker::sampled},
-        ClosedRoom{"OfficeSampled", small_office, 0.4f, LinkMaker::sampled, 0.025f}),
+        ClosedRoom{"OfficeSampled", small_office, 0.4f, LinkMaker::sampled, 0.03f}),
     [](const auto& test) { return std::string(test.param.name); });
 
 // Panes of opacity 0.3 divide the room; what they stop they reflect to 0.8.

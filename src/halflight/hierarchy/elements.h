@@ -146,4 +146,16 @@ void ElementTree::for_each_piece(ElementId cell, const Visit& visit) const {
   }
 }
 
+// Visits an element and all below it, parents before their children.
+template <class Visit>
+void for_all_below(const ElementTree& tree, ElementId top, const Visit& visit) {
+  std::vector<ElementId> open{top};
+  while (!open.empty()) {
+    const ElementId e = open.back();
+    open.pop_back();
+    visit(e);
+    for (const ElementId child : tree[e].children()) open.push_back(child);
+  }
+}
+
 }  // namespace halflight

@@ -16,9 +16,13 @@ constexpr std::uint32_t kWalks = 64;
 constexpr float kSmallBody = 0.01f;  // of the scene's diagonal
 constexpr std::uint32_t kFewerRays = 8, kFewerWalks = 16;
 constexpr int kStepsOfWalk = 8;
+// Inside a large body, which may be a dark room behind a door left ajar: enough to find openings of
+// a few ten-thousandths of its sides.
+constexpr float kLargeBody = 0.25f;  // of the scene's diagonal
+constexpr std::uint32_t kWalksInLargeBody = 256;
+constexpr int kStepsInLargeBody = 64;
 constexpr std::size_t kMostConvexFaces = 64;
-constexpr float kConvexWithin = 1e-4f;    // of the body's height above a face
-constexpr float kLargestChamber = 0.25f;  // share of the scene's diagonal
+constexpr float kConvexWithin = 1e-4f;  // of the body's height above a face
 constexpr std::uint32_t kRaysPerLargeSide = 64;
 constexpr std::uint32_t kRaysPerEmitter = 32;  // of each side of each emitting triangle
 constexpr float kLargeSurface = 1e-3f;         // share of the largest surface's area
@@ -98,21 +102,25 @@ bool sees_only_itself(const Geometry& g, const RayScene& rays, const Bodies& bod
 }
 
 // No random walk that starts on this side leaves the bounds of its body: so it is with the insides
-// of things that have no bottom and stand on the floor, and of those whose bottom lies in it. Only
-// small bodies are asked: a dark room behind a door left ajar must not be taken for one.
+// of things that have no bottom and stand on the floor, and of those whose bottom lies in it. The
+// front of a large body may be a room to walk through, which is to be seen even where it is dark.
 bool is_sealed_off(const Scene& scene, const Geometry& g, const RayScene& rays,
                    const Bodies& bodies, BodyId id, bool back) {
   const std::span<const TriangleId> members = bodies.members(id);
   const Bounds3f box = bounds_of(g, members);
-  if (box.diagonal() > kLargestChamber * g.bounds.diagonal()) return false;
+  const bool large = box.diagonal() > kLargeBody * g.bounds.diagonal();
+  if (large && !back) return false;
+  const int steps = large ? kStepsInLargeBody : kStepsOfWalk;
+  const std::uint32_t walks =
+      large ? kWalksInLargeBody : scaled_to(box.diagonal(), g, kWalks, kFewerWalks);
   const Vec3 margin(4.f * rays.lift_distance());
   const float reach = box.diagonal() + 4.f * glm::length(margin);  // who gets so far has left it
-  for (std::uint32_t i = 0; i < scaled_to(box.diagonal(), g, kWalks, kFewerWalks); ++i) {
+  for (std::uint32_t i = 0; i < walks; ++i) {
     const TriangleId start = members[hash(id.value, i, back, 1) % members.size()];
     const auto [a, b, c] = g.corners(start);
     Vec3 p = (a + b + c) / 3.f;
     Vec3 n = glm::normalize(g.scaled_normal(start)) * (back ? -1.f : 1.f);
-    for (int step = 0; step < kStepsOfWalk; ++step) {
+    for (int step = 0; step < steps; ++step) {
       const std::uint64_t seed = hash(id.value, i, back, step + 2);
       const auto hit = rays.closest_hit(rays.lift(p, n), direction_about(n, 0, seed), reach, seed);
       if (!hit || scene.materials[g.materials[hit->triangle]].emits()) return false;

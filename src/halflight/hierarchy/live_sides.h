@@ -11,9 +11,9 @@
 namespace halflight {
 
 // Dead sides are the insides of closed opaque bodies that hold nothing else (closedness by
-// topology, emptiness by rays), of small bodies that together with what they stand on let no random
-// walk out, and sides of large surfaces from which every ray leaves the scene
-// when nothing shines from outside. In doubt a side is live.
+// topology, emptiness by rays), of bodies that together with what they stand on let no random walk
+// out, and sides of large surfaces from which every ray leaves the scene when nothing shines from
+// outside. In doubt a side is live.
 IdVector<SideId, std::uint8_t> find_live_sides(const Scene& scene, const Geometry& geometry,
                                                const Surfaces& surfaces, const RayScene& rays);
 

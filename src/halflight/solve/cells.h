@@ -9,18 +9,6 @@
 
 namespace halflight {
 
-// Visits an element and all below it, parents before their children.
-template <class Visit>
-void for_all_below(const ElementTree& tree, ElementId top, const Visit& visit) {
-  std::vector<ElementId> open{top};
-  while (!open.empty()) {
-    const ElementId e = open.back();
-    open.pop_back();
-    visit(e);
-    for (const ElementId child : tree[e].children()) open.push_back(child);
-  }
-}
-
 // Metres: of all cells, whatever the feature size.
 float finest_cell(const SolverState& state);
 // A cell is not split below this size, metres: half its feature size.

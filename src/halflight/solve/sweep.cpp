@@ -283,13 +283,9 @@ IdVector<ElementId, float> find_row_limits(SolverState& state, SweepPlan& plan) 
 
 template <class Visit>
 void for_all_cells_below(const ElementTree& tree, ElementId top, const Visit& visit) {
-  std::vector<ElementId> open{top};
-  while (!open.empty()) {
-    const ElementId e = open.back();
-    open.pop_back();
+  for_all_below(tree, top, [&](ElementId e) {
     if (!tree[e].is_cluster()) visit(e);
-    for (const ElementId child : tree[e].children()) open.push_back(child);
-  }
+  });
 }
 
 // Adds what arrives by no link to the limited light of the links.
