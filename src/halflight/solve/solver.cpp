@@ -502,6 +502,9 @@ std::size_t units_within(const SolverState& state, const IterationBudget& budget
   // A part of the scene is no result.
   if (stage == Stage::sample && state.schedule.round == 1 && state.links.size() == 0)
     return kUnlimited;
+  // Those of a coarse solution are few, and each iteration costs as much as its sweeps.
+  const bool refines = stage == Stage::refine || stage == Stage::shape;
+  if (refines && state.schedule.coarseness > 1.f && !state.history.empty()) return kUnlimited;
   const std::size_t links = stage == Stage::sample && budget.links < kUnlimited
                                 ? receivers_within(state, budget.links)
                                 : budget.links;
