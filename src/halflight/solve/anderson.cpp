@@ -39,7 +39,7 @@ std::pair<double, double> least_change(const Products& p, int channel) {
 
 void AndersonMixing::mix(SolverState& state) {
   const std::size_t n = state.tree.size();
-  auto& [last, before] = past_;
+  Past &last = past_[0], &before = past_[1];
   if (last.change.size() != n) {
     for (Past& past : past_) past = {IdVector<ElementId, Rgb>(n), IdVector<ElementId, Rgb>(n)};
     known_ = 0;
