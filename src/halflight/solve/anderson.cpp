@@ -5,16 +5,13 @@
 #include <utility>
 
 #include "halflight/base/parallel.h"
+#include "halflight/solve/sweep.h"
 
 namespace halflight {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
 constexpr double kLeastIndependence = 1e-8;  // of two differences: 1 - cos^2 of what they enclose
-
-Rgb change_of_radiosity(const SolverState& state, ElementId e) {
-  return state.exitance[e] + state.reflectance[e] * state.irradiance[e] - state.radiosity[e];
-}
 
 // Sums over leaf cells, weighted by area: of d0 = f - f0, d1 = f - f1 and the change f itself.
 struct Products {
@@ -40,20 +37,21 @@ std::pair<double, double> least_change(const Products& p, int channel) {
 void AndersonMixing::mix(SolverState& state) {
   const std::size_t n = state.tree.size();
   Past &last = past_[0], &before = past_[1];
-  if (last.change.size() != n) {
+  if (known_ == 0)
     for (Past& past : past_) past = {IdVector<ElementId, Rgb>(n), IdVector<ElementId, Rgb>(n)};
-    known_ = 0;
-  }
-  const Products products = parallel_sum(n, kGrain, Products{}, [&](std::size_t i) {
+  const auto products_at = [&](std::size_t i) {
     const ElementId e(i);
-    if (known_ == 0 || !state.tree[e].is_leaf_cell()) return Products{};
+    if (!state.tree[e].is_leaf_cell()) return Products{};
     const glm::dvec3 f = change_of_radiosity(state, e), d0 = f - glm::dvec3(last.change[e]);
     const glm::dvec3 d1 = known_ > 1 ? f - glm::dvec3(before.change[e]) : glm::dvec3(0.0);
     const double area = static_cast<double>(state.tree[e].area);
     return Products{area * d0 * d0, area * d0 * d1, area * d1 * d1, area * d0 * f, area * d1 * f};
-  });
-  Rgb a, b;
-  for (int c = 0; c < 3; ++c) std::tie(a[c], b[c]) = least_change(products, c);
+  };
+  Rgb a(0.f), b(0.f);
+  if (known_ > 0) {
+    const Products products = parallel_sum(n, kGrain, Products{}, products_at);
+    for (int c = 0; c < 3; ++c) std::tie(a[c], b[c]) = least_change(products, c);
+  }
   // The present takes the place of the sweep before the last.
   parallel_for(n, kGrain, [&](std::size_t i) {
     const ElementId e(i);

@@ -396,15 +396,12 @@ void update_given_light(SolverState& state, float irradiance_threshold) {
 void update_given_light(SolverState& state, float irradiance_threshold,
                         const std::vector<ElementId>& receivers, double total_power) {
   if (!wants_given_light(state)) return;
-  give_light_to_cells(state,
-                      parallel_collect<ElementId>(receivers.size(), 64,
-                                                  [&](std::size_t i, std::vector<ElementId>& open) {
-                                                    for_all_below(state.tree, receivers[i],
-                                                                  [&](ElementId e) {
-                                                                    if (lacks_given_light(state, e))
-                                                                      open.push_back(e);
-                                                                  });
-                                                  }),
+  const auto collect = [&](std::size_t i, std::vector<ElementId>& open) {
+    for_all_below(state.tree, receivers[i], [&](ElementId e) {
+      if (lacks_given_light(state, e)) open.push_back(e);
+    });
+  };
+  give_light_to_cells(state, parallel_collect<ElementId>(receivers.size(), 64, collect),
                       irradiance_threshold, total_power);
 }
 

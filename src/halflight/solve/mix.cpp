@@ -104,7 +104,7 @@ void separate(SolverState& state, const Progress& progress) {
   });
   grouped.exitance = state.exitance;
   grouped.light.clear();
-  const IdVector<ElementId, float> given_share = state.given_share;  // of all groups together
+  IdVector<ElementId, float> given_share = state.given_share;  // of all groups together
   IdVector<ElementId, Rgb> outer_light(state.outer_light.size(), Rgb(0.f));
   for (std::size_t g = 0; g < count; ++g) {
     progress.report("light groups", static_cast<double>(g) / static_cast<double>(count));
@@ -118,7 +118,7 @@ void separate(SolverState& state, const Progress& progress) {
     });
   }
   state.outer_light = std::move(outer_light);
-  state.given_share = given_share;
+  state.given_share = std::move(given_share);
   relight(state, as_they_are);
   mix(state, as_they_are);
 }

@@ -307,14 +307,14 @@ struct Change {
     return *this;
   }
 };
-Change change_of_radiosity(const SolverState& state) {
+Change change_by_pull(const SolverState& state) {
   return parallel_sum(state.tree.size(), kGrain, Change{}, [&](std::size_t i) {
     const ElementId id(i);
     const Element& e = state.tree[id];
     if (!e.is_leaf_cell()) return Change{};
     const Rgb reflected = state.reflectance[id] * state.irradiance[id];
-    const Rgb change = state.exitance[id] + reflected - state.radiosity[id];
-    return Change{e.area * average(glm::abs(change)), e.area * average(reflected)};
+    return Change{e.area * average(glm::abs(change_of_radiosity(state, id))),
+                  e.area * average(reflected)};
   });
 }
 
@@ -380,14 +380,15 @@ Sweeps sweep(SolverState& state, int most_sweeps, double largest_change) {
   SweepPlan plan(state);
   if (state.row_limits.size() != state.tree.size()) state.row_limits = find_row_limits(state, plan);
   AndersonMixing acceleration;
-  const bool accelerated = state.options.memory == 0;  // it takes four vectors of all elements
+  // It takes four vectors of all elements, and a first sweep has nothing to be mixed with.
+  const bool accelerated = state.options.memory == 0 && most_sweeps > 1;
   Sweeps done;
   while (done.count < most_sweeps && !done.converged) {
     plan.shown.update(state);
     gather(state, plan, [&](ElementId s, ElementId r) { return plan.shown(state, s, r); });
     push(state, plan);
     finish_leaves(state);
-    const Change change = change_of_radiosity(state);
+    const Change change = change_by_pull(state);
     done.converged = change.absolute <= largest_change * change.reflected;
     if (accelerated && !done.converged) acceleration.mix(state);
     pull(state);

@@ -21,6 +21,12 @@ Sweeps sweep(SolverState& state, int most_sweeps = kMostSweeps,
 // is multiplied at and below them. Their irradiance is left undefined.
 void update_row_limits(SolverState& state, std::span<const ElementId> receivers);
 
+// By which the next pull changes the radiosity of a leaf cell.
+inline Rgb change_of_radiosity(const SolverState& state, ElementId leaf) {
+  const Rgb reflected = state.reflectance[leaf] * state.irradiance[leaf];
+  return state.exitance[leaf] + reflected - state.radiosity[leaf];
+}
+
 // Radiosity of every element from the irradiance of the leaves: B = rho E + pi L, means upwards.
 void pull(SolverState& state);
 
