@@ -14,7 +14,7 @@
 #include <memory>
 
 #include "halflight/base/hash.h"
-#include "halflight/hierarchy/morton.h"
+#include "halflight/base/morton.h"
 #include "halflight/hierarchy/size_grid.h"
 #include "halflight/rays/sampling.h"
 #include "halflight/scene/procedural/office.h"

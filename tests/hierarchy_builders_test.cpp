@@ -11,7 +11,7 @@
 #include "halflight/hierarchy/build_hierarchy.h"
 #include "halflight/hierarchy/goldsmith_salmon.h"
 #include "halflight/hierarchy/kd_tree.h"
-#include "halflight/hierarchy/morton_order.h"
+#include "halflight/base/morton_order.h"
 #include "halflight/hierarchy/size_grid.h"
 
 namespace halflight {

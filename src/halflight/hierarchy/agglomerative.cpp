@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "halflight/base/parallel.h"
-#include "halflight/hierarchy/morton_order.h"
+#include "halflight/base/morton_order.h"
 
 namespace halflight {
 namespace {

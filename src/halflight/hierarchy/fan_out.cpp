@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "halflight/hierarchy/morton.h"
+#include "halflight/base/morton.h"
 
 namespace halflight {
 namespace {

@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "halflight/base/parallel.h"
-#include "halflight/hierarchy/morton.h"
+#include "halflight/base/morton.h"
 
 namespace halflight {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "halflight/base/parallel.h"
 #include "halflight/hierarchy/half_edges.h"
-#include "halflight/hierarchy/morton.h"
-#include "halflight/hierarchy/morton_order.h"
+#include "halflight/base/morton.h"
+#include "halflight/base/morton_order.h"
 
 namespace halflight {
 namespace {

@@ -9,6 +9,7 @@
 #include "halflight/io/read_failure.h"
 #include "halflight/io/read_gltf.h"
 #include "halflight/io/read_obj.h"
+#include "halflight/scene/order_in_space.h"
 
 namespace halflight {
 namespace {
@@ -54,6 +55,7 @@ Result<Scene> read_scene(const FileOf& file_of, const std::filesystem::path& pat
     Scene scene = read(file_of(), path);
     scene.to_world = to_world(options);
     check_placed_size(scene, path.string());
+    order_in_space(scene);
     return scene;
   } catch (const ReadFailure& failure) {
     return tl::unexpected(one_line(failure.error));

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "halflight/base/parallel.h"
-#include "halflight/hierarchy/morton_order.h"
+#include "halflight/base/morton_order.h"
 
 namespace halflight {
 namespace {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "halflight/base/morton_order.h"
 #include "halflight/base/parallel.h"
 #include "halflight/view/packet.h"
 
@@ -100,13 +101,6 @@ json camera_json(const PlacedCamera& c) {
           {"perspective", c.perspective},
           {"fov", c.vertical_fov},
           {"halfHeight", c.half_height}};
-}
-
-template <class T>
-void arrange(std::vector<T>& items, const std::vector<std::uint32_t>& order) {
-  std::vector<T> arranged(items.size());
-  parallel_for(items.size(), 4096, [&](std::size_t i) { arranged[i] = items[order[i]]; });
-  items = std::move(arranged);
 }
 
 bool is_simple_worth_it(const LitMesh& lit) {

@@ -1,4 +1,4 @@
-#include "halflight/hierarchy/morton_order.h"
+#include "halflight/base/morton_order.h"
 
 #include <array>
 #include <numeric>
