@@ -28,19 +28,44 @@ struct Verdict {
   Link link;
 };
 
+// A cell that may still be split.
+bool is_large_cell(const ElementTree& tree, const RefineOptions& options, ElementId e) {
+  const float gate = options.feature_scale * (*options.feature_sizes)[e];
+  return tree[e].is_leaf_cell() &&
+         tree.cell_size(e) > 2.f * smallest_cell(gate, options.finest_cell);
+}
+
+// Elements that are such a cell or have one below them.
+IdVector<ElementId, std::uint8_t> hold_large_cells(const ElementTree& tree,
+                                                   const RefineOptions& options) {
+  IdVector<ElementId, std::uint8_t> hold(tree.size(), 0);
+  parallel_for(hold.size(), 4096, [&](std::size_t i) {
+    hold[ElementId(i)] = is_large_cell(tree, options, ElementId(i));
+  });
+  for (std::size_t i = hold.size(); i-- > 1;)  // children come after their parents
+    if (hold[ElementId(i)]) hold[tree[ElementId(i)].parent] = 1;
+  return hold;
+}
+
 // Judges pairs: the oracle of the refinement.
 class Oracle {
  public:
+  // `hold_large_cells` is only asked for the shape of elements.
   Oracle(const TransferScene& scene, const RefineOptions& options,
-         const IdVector<ElementId, float>& tolerance, bool accept_all)
-      : scene_(scene), options_(options), tolerance_(tolerance), accept_all_(accept_all) {
+         const IdVector<ElementId, float>& tolerance,
+         const IdVector<ElementId, std::uint8_t>& hold_large_cells, bool accept_all)
+      : scene_(scene),
+        options_(options),
+        tolerance_(tolerance),
+        hold_large_cells_(hold_large_cells),
+        accept_all_(accept_all) {
     scene_area_ = scene.tree[scene.tree.root()].area;
   }
 
   Verdict judge(ElementId r, ElementId s) const {
     const ElementTree& tree = scene_.tree;
     if (r != s && back_facing(tree, r, s)) return {};
-    if (options_.shape_only && r != s && !can_split(r)) return {};
+    if (options_.shape_only && !can_shape(r)) return {};
     const float radiosity = average(sent_radiosity(tree, scene_.inside, scene_.radiosity, s, r));
     const TransferBounds bounds = bound_transfer(tree, scene_.inside, r, s);
     if (!(radiosity > 0.f)) {
@@ -106,7 +131,6 @@ class Oracle {
 
   float feature_size(ElementId e) const { return (*options_.feature_sizes)[e]; }
   float gate(ElementId e) const { return options_.feature_scale * feature_size(e); }
-  float finest(ElementId cell) const { return smallest_cell(gate(cell), options_.finest_cell); }
 
   TransferScene received_by(ElementId r) const {
     TransferScene scene = scene_;
@@ -123,7 +147,13 @@ class Oracle {
   bool can_split(ElementId e) const {
     const Element& element = scene_.tree[e];
     if (element.is_cluster()) return !element.is_leaf() && element.diameter() > gate(e);
-    return !element.is_leaf() || scene_.tree.cell_size(e) > 2.f * finest(e);
+    return !element.is_leaf() || is_large_cell(scene_.tree, options_, e);
+  }
+
+  // Light on it asks for smaller cells, if for anything.
+  bool can_shape(ElementId receiver) const {
+    return hold_large_cells_.contains(receiver) ? hold_large_cells_[receiver] != 0
+                                                : can_split(receiver);
   }
 
   // The larger end first; `accept` when neither end can be split.
@@ -138,6 +168,7 @@ class Oracle {
   const TransferScene& scene_;
   const RefineOptions& options_;
   const IdVector<ElementId, float>& tolerance_;
+  const IdVector<ElementId, std::uint8_t>& hold_large_cells_;
   bool accept_all_;
   float scene_area_;
 };
@@ -181,6 +212,8 @@ void refine(ElementTree& tree, const Visibility& visibility,
             std::vector<ReceiverLink>& links, RefineCounts& counts) {
   std::vector<ElementPair> batch;
   std::vector<Verdict> verdicts;
+  const auto large_cells =
+      options.shape_only ? hold_large_cells(tree, options) : IdVector<ElementId, std::uint8_t>();
   while (!pairs.empty()) {
     const std::size_t n = std::min(pairs.size(), kBatch);
     batch.assign(pairs.end() - static_cast<std::ptrdiff_t>(n), pairs.end());
@@ -189,7 +222,7 @@ void refine(ElementTree& tree, const Visibility& visibility,
                             tree.size() > options.most_elements || progress.cancelled();
 
     const TransferScene scene{tree, visibility, 0.f, radiosity, opacity, options.inside};
-    const Oracle oracle(scene, options, tolerance, accept_all);
+    const Oracle oracle(scene, options, tolerance, large_cells, accept_all);
     verdicts.assign(n, {});
     parallel_for(n, 64, [&](std::size_t i) {
       verdicts[i] = oracle.judge(batch[i].receiver, batch[i].source);
