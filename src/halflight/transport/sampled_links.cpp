@@ -1,5 +1,8 @@
 #include "halflight/transport/sampled_links.h"
 
+#include <algorithm>
+#include <optional>
+
 #include "halflight/base/parallel.h"
 #include "halflight/rays/sampling.h"
 #include "halflight/scene/punctual_light.h"
@@ -7,8 +10,6 @@
 namespace halflight {
 namespace {
 
-// Tries to find a cell of a cluster that faces a given direction.
-constexpr std::uint32_t kFacingAttempts = 16;
 constexpr float kLeastShareOfRays = 0.125f;  // of a small receiver
 constexpr float kMostShareOfArea = 8.f;      // of a large one
 constexpr float kMostTimesRays = 16.f;       // of a bright one
@@ -78,28 +79,49 @@ void sample_cell(const ElementTree& tree, const RayScene& rays,
   tally.make_up_for_buried(n);
 }
 
-// A cell of the cluster that faces w, chosen with density area * cosine; invalid when none was
-// found.
-ElementId facing_cell(const ElementTree& tree, ElementId cluster, const Vec3& w,
-                      std::uint64_t seed) {
-  for (std::uint32_t attempt = 0; attempt < kFacingAttempts; ++attempt) {
-    float wanted = to_unit_float(hash(seed, attempt, 1));
-    ElementId at = cluster;
-    while (!tree[at].is_leaf()) {
-      float left = wanted * tree[at].area;
-      ElementId chosen = tree[at].children()[0];
-      for (const ElementId child : tree[at].children()) {
-        chosen = child;
-        if (left < tree[child].area) break;
-        left -= tree[child].area;
-      }
-      wanted = std::min(left / tree[chosen].area, 0.999999f);
-      at = chosen;
+// The sides in a cluster, to choose from by direction.
+class FacingSides {
+ public:
+  FacingSides(const ElementTree& tree, ElementId cluster) : tree_(tree) {
+    std::vector<ElementId> open{cluster};
+    while (!open.empty()) {
+      const ElementId e = open.back();
+      open.pop_back();
+      if (!tree[e].is_cluster())
+        sides_.push_back({tree[e].area * tree.normal(e), e});
+      else
+        for (const ElementId child : tree[e].children()) open.push_back(child);
     }
-    if (to_unit_float(hash(seed, attempt, 2)) < glm::dot(tree.normal(at), w)) return at;
+    facing_.resize(sides_.size());
   }
-  return {};
-}
+
+  struct Point {
+    Vec3 position{0.f};
+    Vec3 normal{0.f};
+  };
+  // With density area * cosine to w; none where no side faces it.
+  std::optional<Point> choose(const Vec3& w, std::uint64_t seed) {
+    float total = 0.f;
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      total += std::max(0.f, glm::dot(sides_[i].area, w));
+      facing_[i] = total;
+    }
+    if (!(total > 0.f)) return std::nullopt;
+    const float wanted = to_unit_float(hash(seed, 3)) * total;
+    const auto chosen = std::upper_bound(facing_.begin(), facing_.end() - 1, wanted);
+    const ElementId side = sides_[static_cast<std::size_t>(chosen - facing_.begin())].element;
+    return Point{tree_.sample(side, random_shift(seed)).position, tree_.normal(side)};
+  }
+
+ private:
+  struct Side {
+    Vec3 area;  // times the normal
+    ElementId element;
+  };
+  const ElementTree& tree_;
+  std::vector<Side> sides_;
+  std::vector<float> facing_;  // areas times cosines, added up
+};
 
 // What a mean over all cells of a cluster that face w becomes where the cluster is seen from there,
 // or where it is hidden.
@@ -114,14 +136,14 @@ void sample_cluster(const ElementTree& tree, const RayScene& rays,
                     const SampledLinkOptions& options, std::vector<ReceiverLink>& links) {
   const int n = rays_of(tree, cluster, options);
   const Vec2 shift = random_shift(hash(cluster.value, 31));
+  FacingSides sides(tree, cluster);
   RayTally tally{links};
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
     const Vec3 w = uniform_sphere(r2_sequence(k, shift));
     const std::uint64_t seed = hash(cluster.value, k);
-    const ElementId cell = facing_cell(tree, cluster, w, seed);
-    if (!cell.valid()) continue;
-    const Vec3 x = tree.sample(cell, random_shift(seed)).position;
-    const auto hit = rays.closest_hit(rays.lift(x, tree.normal(cell)), w, kInfinity, seed);
+    const auto x = sides.choose(w, seed);
+    if (!x) continue;
+    const auto hit = rays.closest_hit(rays.lift(x->position, x->normal), w, kInfinity, seed);
     if (!hit) continue;
     const std::size_t before = links.size();
     tally.add(tree, opacity, cluster, *hit, 4.f / static_cast<float>(n));
@@ -149,11 +171,12 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
     if (max_component(facing) > 0.f)
       to.push_back({w, facing * concentration(options.inside, cluster, w, false)});
   };
-  // A point of the cluster that sees the direction, lifted off its cell.
+  FacingSides sides(tree, cluster);
+  // A point of the cluster that faces the direction, lifted off its side.
   const auto facing_point = [&](const Vec3& w, std::uint64_t seed) -> std::optional<Vec3> {
-    const ElementId cell = facing_cell(tree, cluster, w, seed);
-    if (!cell.valid()) return std::nullopt;
-    return world.rays.lift(tree.sample(cell, random_shift(seed)).position, tree.normal(cell));
+    const auto x = sides.choose(w, seed);
+    if (!x) return std::nullopt;
+    return world.rays.lift(x->position, x->normal);
   };
   const Vec2 shift = random_shift(hash(cluster.value, 37));
   for (std::uint32_t k = 0; k < n; ++k) {
