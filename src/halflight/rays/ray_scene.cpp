@@ -11,6 +11,7 @@
 #include <xmmintrin.h>
 
 #include "halflight/base/counter.h"
+#include "halflight/base/morton_order.h"
 #include "halflight/rays/sampling.h"
 
 namespace halflight {
@@ -216,6 +217,19 @@ float RayScene::transmittance_to_sky(const Vec3& from, const Vec3& direction) co
 std::optional<RayHit> RayScene::closest_hit(const Vec3& origin, const Vec3& direction,
                                             float max_distance, std::uint64_t seed) const {
   return impl_->intersect(origin, direction, max_distance, seed);
+}
+
+// Rays that go the same way from places near each other meet the same parts of the scene.
+std::vector<std::optional<RayHit>> RayScene::closest_hits(
+    std::span<const RayQuery> queries) const {
+  constexpr int kBitsOfAxis = 4;
+  std::vector<std::uint64_t> ways(queries.size());
+  for (std::size_t i = 0; i < queries.size(); ++i)
+    ways[i] = morton_code(queries[i].direction, {Vec3(-1.f), Vec3(1.f)}) >> (63 - 3 * kBitsOfAxis);
+  std::vector<std::optional<RayHit>> hits(queries.size());
+  for (const std::uint32_t i : order_by_key(ways))
+    hits[i] = closest_hit(queries[i].origin, queries[i].direction, kInfinity, queries[i].seed);
+  return hits;
 }
 
 std::optional<RayHit> RayScene::first_surface(const Vec3& origin, const Vec3& direction,

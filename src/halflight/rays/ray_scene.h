@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "halflight/base/vec.h"
@@ -19,6 +20,11 @@ struct RayHit {
   Vec2 barycentric{0.f};  // weights of the triangle's 2nd and 3rd corner
   float distance = 0.f;
   bool front = true;  // the ray met the counter-clockwise side
+};
+
+struct RayQuery {
+  Vec3 origin{0.f}, direction{0.f};
+  std::uint64_t seed = 0;
 };
 
 inline Vec3 hit_position(const Geometry& geometry, const RayHit& hit) {
@@ -49,6 +55,8 @@ class RayScene {
   // by a hash of the seed and the triangle, so that the answer is repeatable.
   std::optional<RayHit> closest_hit(const Vec3& origin, const Vec3& direction, float max_distance,
                                     std::uint64_t seed) const;
+  // The same of many rays to infinity, which are traced in an order that suits the cache.
+  std::vector<std::optional<RayHit>> closest_hits(std::span<const RayQuery> queries) const;
   // Nearest surface, however little of the light it stops.
   std::optional<RayHit> first_surface(const Vec3& origin, const Vec3& direction,
                                       float max_distance) const;

@@ -10,7 +10,7 @@
 namespace halflight {
 namespace {
 
-constexpr float kLeastShareOfRays = 0.125f;  // of a small receiver
+constexpr float kLeastShareOfRays = 0.03125f;  // of a small receiver
 constexpr float kMostShareOfArea = 8.f;      // of a large one
 constexpr float kMostTimesRays = 16.f;       // of a bright one
 
@@ -32,68 +32,25 @@ float between_rays(float solid_angle, int n) {
   return std::sqrt(solid_angle / static_cast<float>(n));
 }
 
-// Adds what one of n rays of the receiver has met.
-struct RayTally {
-  std::vector<ReceiverLink>& links;
-  std::size_t first = links.size();
-  int buried = 0;
-
-  void add(const ElementTree& tree, const IdVector<ElementId, float>& opacity, ElementId receiver,
-           const RayHit& hit, float weight) {
-    const ElementId source = tree.leaf_hit(hit);
-    if (!source.valid()) {
-      // A side that never sees light: the ray began in a place covered by a closed body.
-      ++buried;
-      return;
-    }
-    // A cell of which no sample was opaque: what was hit is too little of it to send any light.
-    if (!(opacity[source] > 0.f)) return;
-    links.push_back({receiver, {source, weight / opacity[source], 0.f, {}}});
-  }
-  // The rays that began in the open stand for the covered ones too: the receiver's light is that
-  // of its visible part.
-  void make_up_for_buried(int n) {
-    if (buried == 0 || buried == n) return;
-    const float scale = static_cast<float>(n) / static_cast<float>(n - buried);
-    for (std::size_t i = first; i < links.size(); ++i) links[i].link.weight *= scale;
-  }
-};
-
-// Cosine-distributed rays from points spread over the cell: each hit carries 1 / n of the
-// hemisphere.
-void sample_cell(const ElementTree& tree, const RayScene& rays,
-                 const IdVector<ElementId, float>& opacity, ElementId cell, int n,
-                 std::vector<ReceiverLink>& links) {
+// Cosine-distributed rays from points spread over the cell.
+void shoot_from_cell(const ElementTree& tree, const RayScene& rays, ElementId cell, int n,
+                     std::vector<RayQuery>& queries) {
   const Vec3 normal = tree.normal(cell);
   const Frame frame = Frame::from_normal(normal);
   const Vec2 shift_x = random_shift(hash(cell.value, 23)),
              shift_w = random_shift(hash(cell.value, 29));
-  RayTally tally{links};
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
     // Points and directions walk through their sequences with different strides.
     const Vec3 x = tree.sample(cell, companion_sequence(k, shift_x)).position;
     const Vec3 w = frame.to_world(cosine_hemisphere(r2_sequence(k, shift_w)));
-    const auto hit = rays.closest_hit(rays.lift(x, normal), w, kInfinity, hash(cell.value, k));
-    if (hit) tally.add(tree, opacity, cell, *hit, 1.f / static_cast<float>(n));
+    queries.push_back({rays.lift(x, normal), w, hash(cell.value, k)});
   }
-  tally.make_up_for_buried(n);
 }
 
 // The sides in a cluster, to choose from by direction.
 class FacingSides {
  public:
-  FacingSides(const ElementTree& tree, ElementId cluster) : tree_(tree) {
-    std::vector<ElementId> open{cluster};
-    while (!open.empty()) {
-      const ElementId e = open.back();
-      open.pop_back();
-      if (!tree[e].is_cluster())
-        sides_.push_back({tree[e].area * tree.normal(e), e});
-      else
-        for (const ElementId child : tree[e].children()) open.push_back(child);
-    }
-    facing_.resize(sides_.size());
-  }
+  FacingSides(const ElementTree& tree, ElementId cluster) : tree_(tree), cluster_(cluster) {}
 
   struct Point {
     Vec3 position{0.f};
@@ -101,26 +58,61 @@ class FacingSides {
   };
   // With density area * cosine to w; none where no side faces it.
   std::optional<Point> choose(const Vec3& w, std::uint64_t seed) {
-    float total = 0.f;
-    for (std::size_t i = 0; i < sides_.size(); ++i) {
-      total += std::max(0.f, glm::dot(sides_[i].area, w));
-      facing_[i] = total;
-    }
-    if (!(total > 0.f)) return std::nullopt;
-    const float wanted = to_unit_float(hash(seed, 3)) * total;
-    const auto chosen = std::upper_bound(facing_.begin(), facing_.end() - 1, wanted);
-    const ElementId side = sides_[static_cast<std::size_t>(chosen - facing_.begin())].element;
+    ElementId side = try_some(w, seed);
+    if (!side.valid()) side = choose_among_all(w, seed);
+    if (!side.valid()) return std::nullopt;
     return Point{tree_.sample(side, random_shift(seed)).position, tree_.normal(side)};
   }
 
  private:
-  struct Side {
-    Vec3 area;  // times the normal
-    ElementId element;
-  };
+  // Most clusters have many sides that do: rejection finds one soon, or none.
+  ElementId try_some(const Vec3& w, std::uint64_t seed) const {
+    constexpr std::uint32_t kTries = 8;
+    for (std::uint32_t attempt = 0; attempt < kTries; ++attempt) {
+      const ElementId side = side_at(to_unit_float(hash(seed, attempt, 1)));
+      if (to_unit_float(hash(seed, attempt, 2)) < glm::dot(tree_.normal(side), w)) return side;
+    }
+    return {};
+  }
+
+  // Of all area of the cluster, in the order of its children.
+  ElementId side_at(float share) const {
+    ElementId at = cluster_;
+    while (tree_[at].is_cluster()) {
+      float left = share * tree_[at].area;
+      ElementId chosen = tree_[at].children()[0];
+      for (const ElementId child : tree_[at].children()) {
+        chosen = child;
+        if (left < tree_[child].area) break;
+        left -= tree_[child].area;
+      }
+      share = std::min(left / tree_[chosen].area, 0.999999f);
+      at = chosen;
+    }
+    return at;
+  }
+
+  ElementId choose_among_all(const Vec3& w, std::uint64_t seed) {
+    if (sides_.empty())
+      for_all_below(tree_, cluster_, [&](ElementId e) {
+        if (!tree_[e].is_cluster() && tree_[tree_[e].parent].is_cluster()) sides_.push_back(e);
+      });
+    float total = 0.f;
+    facing_.clear();
+    for (const ElementId side : sides_) {
+      total += tree_[side].area * std::max(0.f, glm::dot(tree_.normal(side), w));
+      facing_.push_back(total);
+    }
+    if (!(total > 0.f)) return {};
+    const float wanted = to_unit_float(hash(seed, 3)) * total;
+    const auto chosen = std::upper_bound(facing_.begin(), facing_.end() - 1, wanted);
+    return sides_[static_cast<std::size_t>(chosen - facing_.begin())];
+  }
+
   const ElementTree& tree_;
-  std::vector<Side> sides_;
-  std::vector<float> facing_;  // areas times cosines, added up
+  ElementId cluster_;
+  std::vector<ElementId> sides_;  // empty: not asked for yet
+  std::vector<float> facing_;     // areas times cosines, added up
 };
 
 // What a mean over all cells of a cluster that face w becomes where the cluster is seen from there,
@@ -130,29 +122,52 @@ float concentration(const ClusterVisibility* inside, ElementId cluster, const Ve
   return inside && inside->knows(cluster) ? inside->concentration(cluster, w, hidden) : 1.f;
 }
 
-// Uniform directions, each seen from a cell that faces it: radiance B / pi over 4 pi / n.
-void sample_cluster(const ElementTree& tree, const RayScene& rays,
-                    const IdVector<ElementId, float>& opacity, ElementId cluster,
-                    const SampledLinkOptions& options, std::vector<ReceiverLink>& links) {
-  const int n = rays_of(tree, cluster, options);
+// Uniform directions, each seen from a side that faces it.
+void shoot_from_cluster(const ElementTree& tree, const RayScene& rays, ElementId cluster, int n,
+                        std::vector<RayQuery>& queries) {
   const Vec2 shift = random_shift(hash(cluster.value, 31));
   FacingSides sides(tree, cluster);
-  RayTally tally{links};
   for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(n); ++k) {
     const Vec3 w = uniform_sphere(r2_sequence(k, shift));
     const std::uint64_t seed = hash(cluster.value, k);
     const auto x = sides.choose(w, seed);
-    if (!x) continue;
-    const auto hit = rays.closest_hit(rays.lift(x->position, x->normal), w, kInfinity, seed);
-    if (!hit) continue;
-    const std::size_t before = links.size();
-    tally.add(tree, opacity, cluster, *hit, 4.f / static_cast<float>(n));
-    if (links.size() == before) continue;
-    Link& link = links.back().link;
-    link.direction = PackedDirection(w);
-    link.weight *= concentration(options.inside, cluster, w, tree.contains(cluster, link.source));
+    if (x) queries.push_back({rays.lift(x->position, x->normal), w, seed});
   }
-  tally.make_up_for_buried(n);
+}
+
+// Appends the links of a receiver's n rays, of which these have been shot. Those of a cell each
+// carry 1 / n of the hemisphere; those of a cluster radiance B / pi over 4 pi / n.
+void link_hits(const ElementTree& tree, const IdVector<ElementId, float>& opacity,
+               const SampledLinkOptions& options, ElementId receiver,
+               std::span<const RayQuery> queries, std::span<const std::optional<RayHit>> hits,
+               std::vector<ReceiverLink>& links) {
+  const auto n = static_cast<float>(rays_of(tree, receiver, options));
+  const bool is_cluster = tree[receiver].is_cluster();
+  const std::size_t first = links.size();
+  int buried = 0;
+  for (std::size_t k = 0; k < queries.size(); ++k) {
+    if (!hits[k]) continue;
+    const ElementId source = tree.leaf_hit(*hits[k]);
+    if (!source.valid()) {
+      // A side that never sees light: the ray began in a place covered by a closed body.
+      ++buried;
+      continue;
+    }
+    // A cell of which no sample was opaque: what was hit is too little of it to send any light.
+    if (!(opacity[source] > 0.f)) continue;
+    Link link{source, (is_cluster ? 4.f : 1.f) / (n * opacity[source]), 0.f, {}};
+    if (is_cluster) {
+      const Vec3& w = queries[k].direction;
+      link.direction = PackedDirection(w);
+      link.weight *= concentration(options.inside, receiver, w, tree.contains(receiver, source));
+    }
+    links.push_back({receiver, link});
+  }
+  // The rays that began in the open stand for the covered ones too: the receiver's light is that
+  // of its visible part.
+  const float open = n - static_cast<float>(buried);
+  if (buried == 0 || !(open > 0.f)) return;
+  for (std::size_t i = first; i < links.size(); ++i) links[i].link.weight *= n / open;
 }
 
 }  // namespace
@@ -232,13 +247,29 @@ std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& 
                                        const IdVector<ElementId, float>& opacity,
                                        const std::vector<ElementId>& receivers,
                                        const SampledLinkOptions& options) {
+  // Neighbours shoot together.
+  constexpr std::size_t kBlock = 256;
   return parallel_collect<ReceiverLink>(
-      receivers.size(), 64, [&](std::size_t i, std::vector<ReceiverLink>& links) {
-        const ElementId e = receivers[i];
-        if (tree[e].is_cluster())
-          sample_cluster(tree, rays, opacity, e, options, links);
-        else
-          sample_cell(tree, rays, opacity, e, rays_of(tree, e, options), links);
+      (receivers.size() + kBlock - 1) / kBlock, 1,
+      [&](std::size_t block, std::vector<ReceiverLink>& links) {
+        const auto some = std::span(receivers).subspan(
+            block * kBlock, std::min(kBlock, receivers.size() - block * kBlock));
+        std::vector<RayQuery> queries;
+        std::vector<std::size_t> ends;  // of each receiver's queries
+        for (const ElementId e : some) {
+          const int n = rays_of(tree, e, options);
+          if (tree[e].is_cluster())
+            shoot_from_cluster(tree, rays, e, n, queries);
+          else
+            shoot_from_cell(tree, rays, e, n, queries);
+          ends.push_back(queries.size());
+        }
+        const std::vector<std::optional<RayHit>> hits = rays.closest_hits(queries);
+        for (std::size_t i = 0; i < some.size(); ++i) {
+          const std::size_t from = i == 0 ? 0 : ends[i - 1], count = ends[i] - from;
+          link_hits(tree, opacity, options, some[i], std::span(queries).subspan(from, count),
+                    std::span(hits).subspan(from, count), links);
+        }
       });
 }
 
