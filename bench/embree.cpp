@@ -24,8 +24,8 @@
 #include <functional>
 
 #include "halflight/base/hash.h"
-#include "halflight/base/parallel.h"
 #include "halflight/base/morton.h"
+#include "halflight/base/parallel.h"
 #include "halflight/io/load_scene.h"
 #include "halflight/rays/sampling.h"
 #include "halflight/scene/procedural/cornell_box.h"

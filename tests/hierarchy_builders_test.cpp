@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "halflight/base/hash.h"
+#include "halflight/base/morton_order.h"
 #include "halflight/base/parallel.h"
 #include "halflight/hierarchy/agglomerative.h"
 #include "halflight/hierarchy/build_hierarchy.h"
 #include "halflight/hierarchy/goldsmith_salmon.h"
 #include "halflight/hierarchy/kd_tree.h"
-#include "halflight/base/morton_order.h"
 #include "halflight/hierarchy/size_grid.h"
 
 namespace halflight {

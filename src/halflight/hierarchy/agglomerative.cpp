@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "halflight/base/parallel.h"
 #include "halflight/base/morton_order.h"
+#include "halflight/base/parallel.h"
 
 namespace halflight {
 namespace {

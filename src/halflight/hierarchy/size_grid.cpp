@@ -7,8 +7,8 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "halflight/base/parallel.h"
 #include "halflight/base/morton.h"
+#include "halflight/base/parallel.h"
 
 namespace halflight {
 namespace {

@@ -5,10 +5,10 @@
 #include <tuple>
 #include <utility>
 
-#include "halflight/base/parallel.h"
-#include "halflight/hierarchy/half_edges.h"
 #include "halflight/base/morton.h"
 #include "halflight/base/morton_order.h"
+#include "halflight/base/parallel.h"
+#include "halflight/hierarchy/half_edges.h"
 
 namespace halflight {
 namespace {

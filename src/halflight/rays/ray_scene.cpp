@@ -220,8 +220,7 @@ std::optional<RayHit> RayScene::closest_hit(const Vec3& origin, const Vec3& dire
 }
 
 // Rays that go the same way from places near each other meet the same parts of the scene.
-std::vector<std::optional<RayHit>> RayScene::closest_hits(
-    std::span<const RayQuery> queries) const {
+std::vector<std::optional<RayHit>> RayScene::closest_hits(std::span<const RayQuery> queries) const {
   constexpr int kBitsOfAxis = 4;
   std::vector<std::uint64_t> ways(queries.size());
   for (std::size_t i = 0; i < queries.size(); ++i)

@@ -11,8 +11,8 @@ namespace halflight {
 namespace {
 
 constexpr float kLeastShareOfRays = 0.03125f;  // of a small receiver
-constexpr float kMostShareOfArea = 8.f;      // of a large one
-constexpr float kMostTimesRays = 16.f;       // of a bright one
+constexpr float kMostShareOfArea = 8.f;        // of a large one
+constexpr float kMostTimesRays = 16.f;         // of a bright one
 
 // Rays at a receiver in proportion to the root of its area and to its light make the error of the
 // whole scene least (Neyman 1934).
@@ -255,20 +255,20 @@ std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& 
         const auto some = std::span(receivers).subspan(
             block * kBlock, std::min(kBlock, receivers.size() - block * kBlock));
         std::vector<RayQuery> queries;
-        std::vector<std::size_t> ends;  // of each receiver's queries
+        std::vector<std::size_t> first{0};  // of each receiver's queries
         for (const ElementId e : some) {
           const int n = rays_of(tree, e, options);
           if (tree[e].is_cluster())
             shoot_from_cluster(tree, rays, e, n, queries);
           else
             shoot_from_cell(tree, rays, e, n, queries);
-          ends.push_back(queries.size());
+          first.push_back(queries.size());
         }
         const std::vector<std::optional<RayHit>> hits = rays.closest_hits(queries);
         for (std::size_t i = 0; i < some.size(); ++i) {
-          const std::size_t from = i == 0 ? 0 : ends[i - 1], count = ends[i] - from;
-          link_hits(tree, opacity, options, some[i], std::span(queries).subspan(from, count),
-                    std::span(hits).subspan(from, count), links);
+          const std::size_t count = first[i + 1] - first[i];
+          link_hits(tree, opacity, options, some[i], std::span(queries).subspan(first[i], count),
+                    std::span(hits).subspan(first[i], count), links);
         }
       });
 }

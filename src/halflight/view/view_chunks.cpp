@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "halflight/base/parallel.h"
 #include "halflight/base/morton_order.h"
+#include "halflight/base/parallel.h"
 
 namespace halflight {
 namespace {
