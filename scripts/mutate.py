@@ -92,12 +92,16 @@ def suites(patterns):
 
 def prepare(work, preset):
     """A copy of the files that are tracked, with the changes that are not committed yet."""
-    files = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, check=True,
-                           capture_output=True, text=True).stdout.split("\n")
-    for file in filter(None, files):
+    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, check=True,
+                            capture_output=True, text=True).stdout.split("\n")
+    files = {file for file in listed if os.path.isfile(os.path.join(ROOT, file))}
+    for folder in ("apps", "experiments", "src", "tests"):  # whose sources are built as found
+        for kind in ("cpp", "h"):
+            for old in glob.glob(f"{folder}/**/*.{kind}", root_dir=work, recursive=True):
+                if old not in files:
+                    os.remove(os.path.join(work, old))
+    for file in files:
         source, target = os.path.join(ROOT, file), os.path.join(work, file)
-        if not os.path.isfile(source):
-            continue
         os.makedirs(os.path.dirname(target), exist_ok=True)
         if not os.path.exists(target) or open(source, "rb").read() != open(target, "rb").read():
             shutil.copyfile(source, target)
@@ -196,6 +200,9 @@ def main():
     prepare(options.work, options.preset)
     if not build(options.work, options.preset, options.jobs):
         sys.exit("the tree does not build without mutants")
+    tests = os.path.join(options.work, "build", options.preset, "bin", "halflight_tests")
+    if subprocess.run([tests, "--gtest_list_tests"], capture_output=True).returncode != 0:
+        sys.exit("the tests do not start without mutants")
     for folder in [] if options.green else sorted({m.file.split("/")[0] for m in mutants}):
         if red := is_noticed(options.work, options.preset, folder):
             sys.exit(f"tests are red without mutants: {red}")
