@@ -131,6 +131,30 @@ TEST(ItemBuffer, SharesTheLightAmongThingsBelowAPixel) {
   EXPECT_LT(*std::max_element(visible.begin(), visible.end()), 50.f * kSide * kSide);
 }
 
+// Between the light that comes from pixels and areas below one: what has no pixel has no light.
+TEST(ItemBuffer, GivesThingsBelowAPixelNothingBehindAWall) {
+  QuadScene scene;
+  const MaterialId grey = scene.material(0.5f, 0.f, true);
+  constexpr int kLeaves = 400;
+  constexpr float kSide = 0.002f;
+  for (const float side : {-1.f, 1.f})
+    for (std::uint64_t i = 0; i < kLeaves; ++i) {
+      const Vec2 a = 0.8f * random_shift(hash(i, 3)) + 0.1f;
+      scene.quad({a.x, a.y, 0.3f * side}, {kSide, 0, 0}, {0, kSide, 0}, grey);
+    }
+  scene.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, grey);
+  scene.scene.sky = Rgb(1.f);
+  const Items items(scene.scene);
+  const std::vector<float> visible = items.visible(Vec3(0, 0, 1));
+  float before = 0.f;
+  for (std::size_t i = 0; i < items.cells.size(); ++i) {
+    const float z = items.state.tree[items.cells[i]].center().z;
+    EXPECT_TRUE(z >= 0.f || visible[i] == 0.f) << i;
+    if (z > 0.f) before += visible[i];
+  }
+  EXPECT_NEAR(before / (kLeaves * kSide * kSide), 1.f, 0.3f);
+}
+
 TEST(ItemBuffer, IsAsFineAsTheSmallestItemAsks) {
   const Bounds3f box{Vec3(0.f), Vec3(1.f, 0.5f, 0.2f)};
   EXPECT_EQ(item_resolution(box, 1.f), 32);

@@ -21,7 +21,7 @@ QuadScene floor_with_a_pane(float pane_opacity) {
 }
 
 // Intensity times cosine over squared distance, and the share that a pane lets through.
-TEST(PunctualLight, FallsOnWhatFacesItThroughWhatStandsBetween) {
+TEST(PunctualIrradiance, FallsOnWhatFacesItThroughWhatStandsBetween) {
   QuadScene scene = floor_with_a_pane(0.25f);
   Light lamp;
   lamp.intensity = Rgb(50.f);
