@@ -53,9 +53,9 @@ struct Setting {
   float error;      // that the solve and the reading of direct light aim at
   int gather_rays;  // of indirect light
 };
-constexpr std::array kSettings{Setting{0.2f, 0},    Setting{0.5f, 32},    Setting{0.2f, 32},
-                               Setting{0.2f, 64},   Setting{0.2f, 128},   Setting{0.1f, 64},
-                               Setting{0.1f, 128},  Setting{0.05f, 256},  Setting{0.05f, 1024},
+constexpr std::array kSettings{Setting{0.2f, 0},    Setting{0.5f, 32},   Setting{0.2f, 32},
+                               Setting{0.2f, 64},   Setting{0.2f, 128},  Setting{0.1f, 64},
+                               Setting{0.1f, 128},  Setting{0.05f, 256}, Setting{0.05f, 1024},
                                Setting{0.02f, 2560}};
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
