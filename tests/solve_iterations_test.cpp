@@ -232,7 +232,8 @@ TEST_P(CoarseBeginning, EndsWhereADirectSolveDoes) {
   const SolverState coarsely = solve(Beginning::coarse), direct = solve(Beginning::as_asked);
   EXPECT_TRUE(coarsely.fine_parts_made);
   EXPECT_EQ(coarsely.schedule.receiver_scale, 1.f);
-  EXPECT_NEAR(mean_irradiance(coarsely), mean_irradiance(direct), 0.01f * mean_irradiance(direct));
+  // Each is within a percent of a solution for an error of 1 %, on either side.
+  EXPECT_NEAR(mean_irradiance(coarsely), mean_irradiance(direct), 0.02f * mean_irradiance(direct));
   const auto points = scatter_points(direct, 400);
   EXPECT_LT(relative_rms(testing::read_irradiance(coarsely, points, kMeshReading),
                          testing::read_irradiance(direct, points, kMeshReading)),
