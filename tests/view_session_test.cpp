@@ -232,6 +232,7 @@ TEST(LiveView, DimsALampAsPhysicsSays) {
 
 TEST(LiveView, DimsALampBeforeItIsDone) {
   Live live(room(), 0.03f);
+  ASSERT_TRUE(live.wait([](const json& s) { return s["meanIrradiance"] > 0.0; }));
   live.command(R"({"paused": true})");
   ASSERT_TRUE(live.wait([](const json& s) { return s["phase"] == "paused"; }));
   const double before = live.mean();
