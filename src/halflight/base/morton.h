@@ -17,9 +17,11 @@ inline std::uint64_t spread_bits_by_3(std::uint64_t v) {
   return v;
 }
 
+// Coordinates that are no number count as the lower end.
 inline std::uint64_t morton_code(const Vec3& p, const Bounds3f& within) {
   const Vec3 extent = glm::max(within.extent(), Vec3(1e-20f));
-  const Vec3 t = glm::clamp((p - within.lower) / extent, Vec3(0.f), Vec3(1.f)) * 2097151.f;
+  const Vec3 share = glm::max(Vec3(0.f), (p - within.lower) / extent);  // in this order
+  const Vec3 t = glm::min(share, Vec3(1.f)) * 2097151.f;
   return spread_bits_by_3(static_cast<std::uint64_t>(t.x)) |
          spread_bits_by_3(static_cast<std::uint64_t>(t.y)) << 1 |
          spread_bits_by_3(static_cast<std::uint64_t>(t.z)) << 2;

@@ -25,16 +25,14 @@ void parallel_for(std::size_t n, std::size_t grain, const Body& body) {
   });
 }
 
-// Ordered concatenation: block b of `grain` indices appends to its own vector with
-// body(index, out); the vectors are joined in index order.
+// Ordered concatenation: each block of `grain` indices appends to its own vector with
+// body(first, last, out); the vectors are joined in index order.
 template <class T, class Body>
-std::vector<T> parallel_collect(std::size_t n, std::size_t grain, const Body& body) {
+std::vector<T> parallel_collect_blocks(std::size_t n, std::size_t grain, const Body& body) {
   const std::size_t blocks = (n + grain - 1) / grain;
   std::vector<std::vector<T>> parts(blocks);
-  parallel_for(blocks, 1, [&](std::size_t b) {
-    const std::size_t last = std::min(n, (b + 1) * grain);
-    for (std::size_t i = b * grain; i < last; ++i) body(i, parts[b]);
-  });
+  parallel_for(blocks, 1,
+               [&](std::size_t b) { body(b * grain, std::min(n, (b + 1) * grain), parts[b]); });
   std::size_t total = 0;
   for (const auto& part : parts) total += part.size();
   std::vector<T> joined;
@@ -44,6 +42,15 @@ std::vector<T> parallel_collect(std::size_t n, std::size_t grain, const Body& bo
     std::vector<T>().swap(part);
   }
   return joined;
+}
+
+// The same, index by index, with body(index, out).
+template <class T, class Body>
+std::vector<T> parallel_collect(std::size_t n, std::size_t grain, const Body& body) {
+  return parallel_collect_blocks<T>(n, grain,
+                                    [&](std::size_t first, std::size_t last, std::vector<T>& out) {
+                                      for (std::size_t i = first; i < last; ++i) body(i, out);
+                                    });
 }
 
 // Sum of body(i) over [0, n): blocks of `grain` are added in order, whatever the thread count.

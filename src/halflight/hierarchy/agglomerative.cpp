@@ -89,18 +89,12 @@ class AgglomerativeBuilder {
 
   template <class Group>
   static void sort_along_curve(std::vector<MergeCandidate>& list, const Group& group) {
-    Bounds3f unit{Vec3(0.f), Vec3(1.f)};
+    const Bounds3f unit{Vec3(0.f), Vec3(1.f)};
+    arrange(list, order_along_curve(list.size(), unit,
+                                    [&](std::size_t i) { return list[i].box.center(); }));
     std::vector<std::uint64_t> keys(list.size());
-    parallel_for(list.size(), 4096,
-                 [&](std::size_t i) { keys[i] = morton_code(list[i].box.center(), unit); });
-    std::vector<MergeCandidate> sorted(list.size());
-    const auto apply = [&](const std::vector<std::uint32_t>& order) {
-      parallel_for(list.size(), 4096, [&](std::size_t i) { sorted[i] = list[order[i]]; });
-      list.swap(sorted);
-    };
-    apply(order_by_key(keys));
     parallel_for(list.size(), 4096, [&](std::size_t i) { keys[i] = group(list[i]); });
-    apply(order_by_key(keys));
+    arrange(list, order_by_key(keys));
   }
 
   // What is alone in its object waits for the others.

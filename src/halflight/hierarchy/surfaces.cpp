@@ -5,7 +5,6 @@
 #include <tuple>
 #include <utility>
 
-#include "halflight/base/morton.h"
 #include "halflight/base/morton_order.h"
 #include "halflight/base/parallel.h"
 #include "halflight/hierarchy/half_edges.h"
@@ -171,20 +170,18 @@ Groups group_triangles(const Geometry& g,
   return groups;
 }
 
-std::vector<std::uint32_t> order_along_curve(const Geometry& g, const Groups& groups) {
-  std::vector<std::uint64_t> codes(groups.size());
-  parallel_for(groups.size(), 4096, [&](std::size_t i) {
+std::vector<std::uint32_t> order_of_groups(const Geometry& g, const Groups& groups) {
+  return order_along_curve(groups.size(), g.bounds, [&](std::size_t i) {
     Bounds3f box;
     for (std::size_t k = groups.first[i]; k < groups.first[i + 1]; ++k)
       for (const Vec3& p : g.corners(groups.triangles[k])) box.extend(p);
-    codes[i] = morton_code(box.center(), g.bounds);
+    return box.center();
   });
-  return order_by_key(codes);
 }
 
 Surfaces make_surfaces(const Geometry& g, const Groups& groups,
                        const std::vector<std::array<TriangleId, 3>>& neighbours) {
-  const std::vector<std::uint32_t> order = order_along_curve(g, groups);
+  const std::vector<std::uint32_t> order = order_of_groups(g, groups);
   Surfaces result;
   result.surfaces.resize(groups.size());
   result.triangles.resize(g.triangles.size());

@@ -11,14 +11,12 @@ std::vector<std::uint32_t> triangle_order(const Primitive& p) {
   Bounds3f bounds;
   for (const Vec3& v : p.positions)
     if (is_finite(v)) bounds.extend(v);
-  std::vector<std::uint64_t> codes(p.triangles.size(), 0);
-  parallel_for(codes.size(), 4096, [&](std::size_t i) {
+  return order_along_curve(p.triangles.size(), bounds, [&](std::size_t i) {
     Bounds3f box;
     for (const std::uint32_t corner : p.triangles[i]) box.extend(p.positions[corner]);
     const Vec3 center = box.center();
-    if (is_finite(center) && is_finite(bounds.extent())) codes[i] = morton_code(center, bounds);
+    return is_finite(center) ? center : bounds.lower;
   });
-  return order_by_key(codes);
 }
 
 // Renumbers the corners; vertices that no triangle uses come last.

@@ -28,11 +28,14 @@ struct Verdict {
   Link link;
 };
 
+float gate(const RefineOptions& options, ElementId e) {
+  return options.feature_scale * (*options.feature_sizes)[e];
+}
+
 // A cell that may still be split.
 bool is_large_cell(const ElementTree& tree, const RefineOptions& options, ElementId e) {
-  const float gate = options.feature_scale * (*options.feature_sizes)[e];
   return tree[e].is_leaf_cell() &&
-         tree.cell_size(e) > 2.f * smallest_cell(gate, options.finest_cell);
+         tree.cell_size(e) > 2.f * smallest_cell(gate(options, e), options.finest_cell);
 }
 
 // Elements that are such a cell or have one below them.
@@ -130,7 +133,6 @@ class Oracle {
   }
 
   float feature_size(ElementId e) const { return (*options_.feature_sizes)[e]; }
-  float gate(ElementId e) const { return options_.feature_scale * feature_size(e); }
 
   TransferScene received_by(ElementId r) const {
     TransferScene scene = scene_;
@@ -146,7 +148,7 @@ class Oracle {
 
   bool can_split(ElementId e) const {
     const Element& element = scene_.tree[e];
-    if (element.is_cluster()) return !element.is_leaf() && element.diameter() > gate(e);
+    if (element.is_cluster()) return !element.is_leaf() && element.diameter() > gate(options_, e);
     return !element.is_leaf() || is_large_cell(scene_.tree, options_, e);
   }
 

@@ -135,17 +135,24 @@ void shoot_from_cluster(const ElementTree& tree, const RayScene& rays, ElementId
   }
 }
 
-// Appends the links of a receiver's n rays, of which these have been shot. Those of a cell each
-// carry 1 / n of the hemisphere; those of a cluster radiance B / pi over 4 pi / n.
+// What a receiver is to shoot: n rays, fewer where no side faces their way.
+struct Shots {
+  ElementId receiver;
+  int n = 0;
+  std::size_t first = 0, last = 0;  // of the queries of its block
+};
+
+// Appends the links of a receiver's rays. Those of a cell each carry 1 / n of the hemisphere; those
+// of a cluster radiance B / pi over 4 pi / n.
 void link_hits(const ElementTree& tree, const IdVector<ElementId, float>& opacity,
-               const SampledLinkOptions& options, ElementId receiver,
+               const ClusterVisibility* inside, const Shots& shots,
                std::span<const RayQuery> queries, std::span<const std::optional<RayHit>> hits,
                std::vector<ReceiverLink>& links) {
-  const auto n = static_cast<float>(rays_of(tree, receiver, options));
-  const bool is_cluster = tree[receiver].is_cluster();
+  const auto n = static_cast<float>(shots.n);
+  const bool is_cluster = tree[shots.receiver].is_cluster();
   const std::size_t first = links.size();
   int buried = 0;
-  for (std::size_t k = 0; k < queries.size(); ++k) {
+  for (std::size_t k = shots.first; k < shots.last; ++k) {
     if (!hits[k]) continue;
     const ElementId source = tree.leaf_hit(*hits[k]);
     if (!source.valid()) {
@@ -159,9 +166,10 @@ void link_hits(const ElementTree& tree, const IdVector<ElementId, float>& opacit
     if (is_cluster) {
       const Vec3& w = queries[k].direction;
       link.direction = PackedDirection(w);
-      link.weight *= concentration(options.inside, receiver, w, tree.contains(receiver, source));
+      const bool hidden = tree.contains(shots.receiver, source);
+      link.weight *= concentration(inside, shots.receiver, w, hidden);
     }
-    links.push_back({receiver, link});
+    links.push_back({shots.receiver, link});
   }
   // The rays that began in the open stand for the covered ones too: the receiver's light is that
   // of its visible part.
@@ -247,29 +255,24 @@ std::vector<ReceiverLink> sample_links(const ElementTree& tree, const RayScene& 
                                        const IdVector<ElementId, float>& opacity,
                                        const std::vector<ElementId>& receivers,
                                        const SampledLinkOptions& options) {
-  // Neighbours shoot together.
-  constexpr std::size_t kBlock = 256;
-  return parallel_collect<ReceiverLink>(
-      (receivers.size() + kBlock - 1) / kBlock, 1,
-      [&](std::size_t block, std::vector<ReceiverLink>& links) {
-        const auto some = std::span(receivers).subspan(
-            block * kBlock, std::min(kBlock, receivers.size() - block * kBlock));
+  constexpr std::size_t kTogether = 256;  // neighbours, whose rays meet the same places
+  return parallel_collect_blocks<ReceiverLink>(
+      receivers.size(), kTogether,
+      [&](std::size_t first, std::size_t last, std::vector<ReceiverLink>& links) {
         std::vector<RayQuery> queries;
-        std::vector<std::size_t> first{0};  // of each receiver's queries
-        for (const ElementId e : some) {
-          const int n = rays_of(tree, e, options);
-          if (tree[e].is_cluster())
-            shoot_from_cluster(tree, rays, e, n, queries);
+        std::vector<Shots> all_shots;
+        for (std::size_t i = first; i < last; ++i) {
+          Shots shots{receivers[i], rays_of(tree, receivers[i], options), queries.size()};
+          if (tree[shots.receiver].is_cluster())
+            shoot_from_cluster(tree, rays, shots.receiver, shots.n, queries);
           else
-            shoot_from_cell(tree, rays, e, n, queries);
-          first.push_back(queries.size());
+            shoot_from_cell(tree, rays, shots.receiver, shots.n, queries);
+          shots.last = queries.size();
+          all_shots.push_back(shots);
         }
         const std::vector<std::optional<RayHit>> hits = rays.closest_hits(queries);
-        for (std::size_t i = 0; i < some.size(); ++i) {
-          const std::size_t count = first[i + 1] - first[i];
-          link_hits(tree, opacity, options, some[i], std::span(queries).subspan(first[i], count),
-                    std::span(hits).subspan(first[i], count), links);
-        }
+        for (const Shots& shots : all_shots)
+          link_hits(tree, opacity, options.inside, shots, queries, hits, links);
       });
 }
 
