@@ -8,9 +8,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "halflight/io/image_read.h"
+#include "halflight/io/load_scene.h"
 #include "halflight/scene/procedural/catalogue.h"
 #include "halflight/view/packet.h"
 #include "halflight/view/shared_exponent.h"
+#include "halflight/view/view_downloads.h"
 #include "halflight/view/view_layers.h"
 #include "halflight/view/view_queries.h"
 #include "halflight/view/view_session.h"
@@ -368,6 +371,101 @@ TEST(LiveView, ShowsWhatTheSolverWorksWith) {
       ask([&](LiveSolution& l) { return feature_mask_packet(l, view, 8.f); }), "classes");
   EXPECT_GT(std::count(classes.begin(), classes.end(), 2u), 100) << "the table throws a shadow";
   EXPECT_GT(std::count(classes.begin(), classes.end(), 0u), 100);
+}
+
+// The packet of a cut through a swarm of little quads, on the way from the table to the lamp.
+TEST(LiveView, ShowsTheClustersThatARayTakesForMedia) {
+  QuadScene swarm;
+  swarm.scene = room();
+  const MaterialId grey = swarm.material(0.5f);
+  for (int i = 0; i < 64; ++i)
+    swarm.quad(
+        {1.38f + 0.04f * static_cast<float>(i % 4), 1.6f + 0.02f * static_cast<float>(i / 16),
+         1.38f + 0.04f * static_cast<float>(i / 4 % 4)},
+        {0.02f, 0, 0}, {0, 0, 0.02f}, grey);
+  Live live(swarm.scene);
+  ASSERT_TRUE(live.done());
+  const auto table = [&] {
+    const json seen = live.probe_at({1.4f, 1.f, 1.4f}, {0, -1, 0}, false);
+    return ElementId(seen["element"]["id"].get<std::size_t>());
+  };
+  const auto cut = [&](ElementId e) {
+    return live.session.ask([=](LiveSolution& l) { return cut_packet(l, e); }, 20.0);
+  };
+  EXPECT_FALSE(cut(ElementId(std::size_t{1} << 30)));
+  const auto exact = cut(table());
+  ASSERT_FALSE(exact) << "clusters save nothing in so small a room";
+  EXPECT_THAT(exact.error().line(), HasSubstr("traced exactly"));
+
+  live.command(R"({"visibility": "multires"})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["visibility"] == "multires"; }));
+  ASSERT_TRUE(live.done());
+  const auto packet = cut(table());
+  ASSERT_TRUE(packet) << packet.error().line();
+  const auto line = array_of<float>(*packet, "lines"), boxes = array_of<float>(*packet, "boxes");
+  const auto averaged = array_of<float>(*packet, "averaged");
+  const auto extinction = array_of<float>(*packet, "extinction");
+  ASSERT_EQ(line.size(), 6u);
+  EXPECT_NEAR(line[1], 0.5f, 0.01f);
+  EXPECT_NEAR(line[4], 2.9f, 0.01f) << "ends in the brightest lamp";
+  ASSERT_EQ(boxes.size(), 6 * averaged.size());
+  ASSERT_EQ(extinction.size(), averaged.size());
+  EXPECT_GT(std::count(averaged.begin(), averaged.end(), 1.f), 0);
+  for (std::size_t i = 0; i < averaged.size(); ++i) {
+    if (averaged[i] == 0.f) continue;
+    EXPECT_GT(extinction[i], 0.f);
+    EXPECT_GT(boxes[6 * i + 1], 1.5f) << "a part of the swarm, not of the room";
+    EXPECT_LT(boxes[6 * i + 4], 1.7f);
+  }
+}
+
+TEST(LiveView, EstimatesItsErrorBeforeThePictureIsSharp) {
+  Live live(room(), 0.02f);
+  live.command(R"({"links": 10})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["phase"] == "limited"; }));
+  const auto packet = live.session.ask(
+      [](LiveSolution& l) -> Result<std::string> { return error_packet(l); }, 20.0);
+  ASSERT_TRUE(packet) << packet.error().line();
+  EXPECT_FALSE(json_of(*packet)["measured"].get<bool>());
+  const auto errors = array_of<float>(*packet, "values");
+  ASSERT_FALSE(errors.empty());
+  for (const float e : errors) {
+    EXPECT_GE(e, 0.f);
+    EXPECT_LE(e, 1.f);
+  }
+  EXPECT_GT(*std::max_element(errors.begin(), errors.end()), 0.f);
+}
+
+// The scene and the picture hold the light that a probe reads.
+TEST(LiveView, GivesTheLitSceneAndAPictureToTakeHome) {
+  Live live;
+  ASSERT_TRUE(live.done());
+  const auto lit = live.session.ask_copy(lit_glb, 20.0);
+  ASSERT_TRUE(lit) << lit.error().line();
+  const auto scene = parse_scene(Bytes(lit->begin(), lit->end()), "lit.glb");
+  ASSERT_TRUE(scene) << scene.error().line();
+  const Geometry lit_room = flatten(*scene), plain = flatten(room());
+  EXPECT_GT(lit_room.triangles.size(), plain.triangles.size());
+  EXPECT_EQ(lit_room.bounds.lower, plain.bounds.lower);
+  EXPECT_EQ(lit_room.bounds.upper, plain.bounds.upper);
+
+  ViewOfInterest down;  // to the middle of the table
+  down.camera.position = {1.4f, 2.f, 1.4f};
+  down.camera.forward = {0, -1, 0};
+  down.camera.up = {0, 0, 1};
+  down.camera.vertical_fov = 0.1f;
+  down.width = 9;
+  down.height = 7;
+  const auto picture = live.session.ask_copy(
+      [&](const SolutionCopy& copy) { return hdr_picture(copy, down); }, 20.0);
+  ASSERT_TRUE(picture) << picture.error().line();
+  const auto image = decode_float_image(Bytes(picture->begin(), picture->end()), "view.exr");
+  ASSERT_TRUE(image) << image.error().line();
+  EXPECT_EQ(image->width, 9);
+  EXPECT_EQ(image->height, 7);
+  const json seen = live.probe_at({1.4f, 2.f, 1.4f}, {0, -1, 0}, true);
+  const float irradiance = seen["irradiance"][0];
+  EXPECT_NEAR(image->at(4, 3).r, 0.5f * irradiance / kPi, 0.05f * irradiance / kPi);
 }
 
 TEST(LiveView, LeavesTheProcessorToThePageThatAsksForIt) {

@@ -401,10 +401,12 @@ void ViewSession::apply(const ViewCommand& command) {
     options.feature_size = *command.feature_size;
     again = true;
   }
-  if (command.visibility && *command.visibility != options.visibility) {
+  if (command.visibility) {
+    const VisibilityMode before =
+        options.visibility_pilot ? live_.state->visibility->mode() : options.visibility;
+    again |= *command.visibility != before;
     options.visibility = *command.visibility;
     options.visibility_pilot = false;  // the user has chosen
-    again = true;
   }
   bool finer = false;
   if (command.error && *command.error != options.error) {
