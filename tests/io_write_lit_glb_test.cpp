@@ -201,6 +201,37 @@ TEST_F(LitGlb, WhatAViewerShowsIsExposureTimesRadiosityOverPi) {
   EXPECT_FLOAT_EQ(file.document["asset"]["extras"]["exposure"], exposure);
 }
 
+TEST_F(LitGlb, WhatLetsLightThroughIsSeenThrough) {
+  Scene s;
+  const auto add = [&](AlphaMode mode, float alpha, float transmission) {
+    const MaterialId id = add_material(s, "", Rgb(0.5f), Rgb(0));
+    s.materials[id].alpha_mode = mode;
+    s.materials[id].alpha = alpha;
+    s.materials[id].alpha_cutoff = 0.3f;
+    s.materials[id].transmission = transmission;
+    add_node(s, "", Mat4(1.0), add_square(s, id));
+  };
+  add(AlphaMode::opaque, 0.25f, 0.f);
+  add(AlphaMode::mask, 0.25f, 0.f);
+  add(AlphaMode::blend, 0.25f, 0.f);
+  add(AlphaMode::opaque, 0.25f, 0.5f);
+  add(AlphaMode::blend, 0.25f, 0.5f);
+  write(s, 1.f);
+  const json materials = test::GlbFile(path).document["materials"];
+  const auto alpha = [&](std::size_t i) {
+    return materials[i]["pbrMetallicRoughness"]["baseColorFactor"][3].get<float>();
+  };
+  EXPECT_EQ(materials[0].value("alphaMode", "OPAQUE"), "OPAQUE");
+  EXPECT_FLOAT_EQ(alpha(0), 1.f);
+  EXPECT_EQ(materials[1]["alphaMode"], "MASK");
+  EXPECT_FLOAT_EQ(materials[1]["alphaCutoff"].get<float>(), 0.3f);
+  EXPECT_FLOAT_EQ(alpha(1), 0.25f);
+  for (const std::size_t i : {2, 3, 4}) EXPECT_EQ(materials[i]["alphaMode"], "BLEND");
+  EXPECT_FLOAT_EQ(alpha(2), 0.25f);
+  EXPECT_FLOAT_EQ(alpha(3), 0.5f);
+  EXPECT_FLOAT_EQ(alpha(4), 0.125f);
+}
+
 TEST_F(LitGlb, TheBackOfAOneSidedLampIsDark) {
   Scene s;
   add_node(s, "lamp", Mat4(1.0), add_square(s, add_material(s, "lamp", Rgb(0.5f), Rgb(100))));

@@ -3,7 +3,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "gltf_check.h"
+#include "halflight/io/load_scene.h"
 #include "halflight/io/write_gltf.h"
+#include "halflight/scene/geometry.h"
 
 namespace halflight {
 namespace {
@@ -113,6 +115,29 @@ TEST(WriteSceneGlb, EmissionAboveOneGoesToTheStrengthExtension) {
     EXPECT_FLOAT_EQ(factor[c] * strength, expected[c]);
   }
   std::filesystem::remove(file);
+}
+
+// Instancing has no shear: such copies become nodes of their own.
+TEST(WriteSceneGlb, ShearedCopiesStayWhereTheyAre) {
+  Scene s;
+  const MeshId square = s.meshes.push_back({"square", {unit_square(s.materials.push_back({}))}});
+  Mat4 sheared(1.0);
+  sheared[1][0] = 0.5;
+  sheared[3][2] = 3.0;
+  Node many;
+  many.mesh = square;
+  many.instances = {glm::translate(Mat4(1.0), glm::dvec3(0, 0, 1)), sheared};
+  s.nodes.push_back(many);
+  const auto file = test::temporary_file("sheared.glb");
+  ASSERT_TRUE(write_scene_glb(file, s));
+  const auto back = load_scene(file);
+  std::filesystem::remove(file);
+  ASSERT_TRUE(back) << back.error().line();
+  const Geometry written = flatten(s), read = flatten(*back);
+  ASSERT_EQ(read.positions.size(), written.positions.size());
+  for (const Vec3& p : written.positions)
+    EXPECT_EQ(std::count(read.positions.begin(), read.positions.end(), p), 1)
+        << p.x << ' ' << p.y << ' ' << p.z;
 }
 
 TEST(WriteSceneGlb, AFolderThatIsNotThereIsASystemError) {

@@ -7,12 +7,14 @@
 #include "halflight/base/parallel.h"
 #include "halflight/visibility/extinction.h"
 #include "halflight/visibility/multires_tree.h"
+#include "quad_scene.h"
 
 namespace halflight {
 namespace {
 
 using testing::ClusteredWorld;
 using testing::Dice;
+using testing::QuadScene;
 using testing::ShapeScene;
 
 float total_blocking_area(ShapeScene& shapes) {
@@ -52,6 +54,25 @@ TEST(Extinction, TranslucentSurfacesBlockTheirShare) {
   // Both walls of a glass cube together stop 1 - 0.7^2 of a ray.
   glass.cube(Vec3(0.f), kStraight, 2.f);
   EXPECT_NEAR(total_blocking_area(glass), (1.f - 0.49f) * 6.f, 1e-5f);
+}
+
+// A leaf cut out of a sheet by a texture, of which a quarter is there.
+TEST(Extinction, SheetsWithHolesBlockWhatIsLeftOfThem) {
+  QuadScene leaf;
+  Texture quarter;
+  quarter.width = quarter.height = 2;
+  quarter.texels = {
+      {255, 255, 255, 255}, {255, 255, 255, 0}, {255, 255, 255, 0}, {255, 255, 255, 0}};
+  const MaterialId material = leaf.material(0.5f);
+  leaf.scene.materials[material].alpha_mode = AlphaMode::mask;
+  leaf.scene.materials[material].reflectance_texture.texture =
+      leaf.scene.textures.push_back(quarter);
+  leaf.quad(Vec3(0.f), Vec3(2, 0, 0), Vec3(0, 2, 0), material);
+  const World world(leaf.scene);
+  const Surfaces surfaces = build_surfaces(world.geometry);
+  float sum = 0.f;
+  for (const float area : blocking_areas(world.scene, world.geometry, surfaces.bodies)) sum += area;
+  EXPECT_NEAR(sum, 0.25f * 4.f / 2.f, 0.1f);
 }
 
 // Bodies spread evenly through a slab, and rays through its middle. All numbers are means over the

@@ -138,6 +138,27 @@ TEST_P(RandomTrees, CountEverySurfaceThatARayMeetsOnce) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, RandomTrees, ::testing::Values(1, 2, 3, 10, 11, 12, 40, 41, 42));
 
+// Below some depth the triangles count and clusters no longer do.
+TEST(MultiresTree, HoldsEveryTriangleOfAChainOfClusters) {
+  ShapeScene shapes = clutter(5, 1000);
+  ClusteredWorld c(shapes.scene);
+  const std::size_t surfaces = c.surfaces.surfaces.size();
+  ASSERT_GT(surfaces, 1000u);
+  c.clusters = {};
+  c.clusters.clusters.resize(surfaces);
+  for (std::size_t i = 0; i < surfaces; ++i) {
+    c.clusters.clusters[i].surfaces = {SurfaceId(i)};
+    if (i > 0) c.clusters.clusters[i - 1].clusters = {static_cast<std::uint32_t>(i)};
+  }
+  const MultiresTree tree = make_tree(c);
+  std::multiset<TriangleId> held;
+  for (const TriangleBlock& block : tree.arrays().blocks)
+    for (int i = 0; i < 8; ++i)
+      if (block.used >> i & 1) held.insert(block.triangles[i]);
+  EXPECT_EQ(held.size(), c.world.geometry.triangles.size());
+  EXPECT_EQ(std::set<TriangleId>(held.begin(), held.end()).size(), held.size());
+}
+
 TEST(MultiresTree, OfNothingLetsEverythingThrough) {
   const ClusteredWorld empty{Scene{}};
   const MultiresTree tree = make_tree(empty);
