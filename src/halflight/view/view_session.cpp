@@ -141,6 +141,7 @@ Result<void> ViewSession::post(Task task, bool hurry) {
   {
     const std::lock_guard lock(mutex_);
     if (failure_) return tl::unexpected(*failure_);
+    if (stop_) return system_error("the live view has ended", "live view");
     if (inbox_.size() >= kMostWaiting)
       return system_error("too many requests are waiting", "live view", "wait a moment");
     inbox_.push_back(std::move(task));
@@ -184,7 +185,8 @@ void ViewSession::nap_after(Clock::time_point start, const std::function<bool()>
 Result<std::string> ViewSession::ask(Question question, double seconds) {
   auto answer = std::make_shared<std::promise<Result<std::string>>>();
   std::future<Result<std::string>> future = answer->get_future();
-  auto run = [this, answer, question = std::move(question)] {
+  // Holds the promise alone: it is broken, and the wait over, where the question is dropped.
+  auto run = [this, answer = std::move(answer), question = std::move(question)] {
     if (!even_) {
       answer->set_value(input_error("the scene is not there yet", "live view", "wait a moment"));
       return;
@@ -198,7 +200,8 @@ Result<std::string> ViewSession::ask(Question question, double seconds) {
     return system_error("the solver is busy", "live view", "try again in a moment");
   try {
     return future.get();
-  } catch (const std::future_error&) {  // the session ends
+  } catch (const std::future_error&) {
+    if (const auto failed = failure()) return tl::unexpected(*failed);
     return system_error("the live view has ended", "live view");
   }
 }
@@ -227,9 +230,9 @@ void ViewSession::run() {
                      Error::Kind::system};
   }
   stop_sharpening();
-  if (failure()) {
+  {
     const std::lock_guard lock(mutex_);
-    phase_ = Phase::failed;
+    if (failure_) phase_ = Phase::failed;
     inbox_.clear();
   }
   publish_status();
