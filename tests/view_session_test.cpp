@@ -325,6 +325,7 @@ TEST(LiveView, ShowsTheClustersThatARayTakesForMedia) {
   const auto exact = cut(table());
   ASSERT_FALSE(exact) << "clusters save nothing in so small a room";
   EXPECT_THAT(exact.error().line(), HasSubstr("traced exactly"));
+  EXPECT_EQ(live.status()["visibilityWanted"], "exact") << "so that the page can ask for another";
 
   live.command(R"({"visibility": "multires"})");
   ASSERT_TRUE(live.wait([](const json& s) { return s["visibility"] == "multires"; }));

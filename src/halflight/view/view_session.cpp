@@ -383,6 +383,12 @@ void ViewSession::light_changed() {
   phase_ = finished_ ? Phase::sharpening : Phase::solving;
 }
 
+// By the user, or else by the pilot.
+VisibilityMode ViewSession::visibility_chosen() const {
+  return live_.options.visibility_pilot ? live_.state->visibility->mode()
+                                        : live_.options.visibility;
+}
+
 void ViewSession::apply(const ViewCommand& command) {
   const auto restarted = [this] {
     light_changed();
@@ -405,9 +411,7 @@ void ViewSession::apply(const ViewCommand& command) {
     again = true;
   }
   if (command.visibility) {
-    const VisibilityMode before =
-        options.visibility_pilot ? live_.state->visibility->mode() : options.visibility;
-    again |= *command.visibility != before;
+    again |= *command.visibility != visibility_chosen();
     options.visibility = *command.visibility;
     options.visibility_pilot = false;  // the user has chosen
   }
@@ -551,7 +555,7 @@ void ViewSession::publish_status() {
     s["sharp"] = sharp_shown_ && sharp_;
     s["featureSize"] = state.options.feature_size;
     s["errorWanted"] = live_.options.error;
-    s["visibilityWanted"] = halflight::name_of(live_.options.visibility);
+    s["visibilityWanted"] = halflight::name_of(visibility_chosen());
     s["visibility"] = halflight::name_of(state.visibility->mode());
     s["stage"] = halflight::name_of(state.schedule.stage);
     s["level"] = state.schedule.level;

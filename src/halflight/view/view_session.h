@@ -112,6 +112,7 @@ class ViewSession {
   void finish();
   void apply(const ViewCommand& command);
   Result<void> check(const ViewCommand& command) const;
+  VisibilityMode visibility_chosen() const;
 
   Shown& shown() { return sharp_shown_ ? *sharp_shown_ : *even_; }
   void cut_anew();
