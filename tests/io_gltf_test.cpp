@@ -234,5 +234,37 @@ TEST(Gltf, MistakesAreReportedWithTheirPlace) {
               HasSubstr("buffers/0: the buffer should have 1000 bytes"));
 }
 
+TEST(Gltf, MistakesInMaterialsAreReportedWithTheirPlace) {
+  const auto with = [](const json& material, const json& sampler) {
+    GltfBuilder gltf;
+    gltf.json["images"] = {{{"uri", "none.png"}}};
+    gltf.json["samplers"] = {sampler};
+    gltf.json["textures"] = {{{"source", 0}, {"sampler", 0}}, json::object()};
+    gltf.add_triangle(material);
+    return gltf;
+  };
+  const auto textured = [](const json& info) {
+    return json{{"pbrMetallicRoughness", {{"baseColorTexture", info}}}};
+  };
+  const json plain = json::object();
+  EXPECT_THAT(refusal(with({{"alphaMode", "FOIL"}}, plain)),
+              HasSubstr("materials/0/alphaMode: 'FOIL' is not an alpha mode"));
+  EXPECT_THAT(refusal(with(textured({{"index", 0}}), {{"wrapS", 1}})),
+              HasSubstr("samplers/0/wrapS: this is not a wrap mode"));
+  EXPECT_THAT(refusal(with({{"emissiveFactor", {-1, 0, 0}}}, plain)),
+              HasSubstr("materials/0: the emission is negative"));
+  EXPECT_THAT(refusal(with(textured({{"index", 2}}), plain)), HasSubstr("there is no textures 2"));
+
+  const Scene mirrored = load(with(textured({{"index", 0}}), {{"wrapS", 33648}, {"wrapT", 33071}}));
+  EXPECT_EQ(mirrored.textures.raw()[0].wrap_u, Wrap::mirror);
+  EXPECT_EQ(mirrored.textures.raw()[0].wrap_v, Wrap::clamp);
+  // What cannot be used is left out and told.
+  for (const json& info : {json{{"index", 0}, {"texCoord", 2}}, json{{"index", 1}}}) {
+    const Scene scene = load(with(textured(info), plain));
+    EXPECT_FALSE(scene.materials.raw()[0].reflectance_texture.valid());
+    EXPECT_THAT(scene.warnings, ::testing::Contains(HasSubstr("ignored")));
+  }
+}
+
 }  // namespace
 }  // namespace halflight

@@ -162,6 +162,8 @@ TEST(PathTracer, DirectionalLightGivesItsIlluminanceTimesTheCosine) {
   EXPECT_NEAR(t.irradiance({5.f, 0.f, 0.f}, kUp, 4), 1000.f, 1e-3f);
   EXPECT_NEAR(t.irradiance({5.f, 0.f, 0.f}, {0.f, 0.6f, 0.8f}, 4), 600.f, 1e-3f);
   EXPECT_EQ(t.irradiance({0.f, 0.f, 0.f}, kUp, 4), 0.f);
+  EXPECT_EQ(t.tracer.direct_visibility({5.f, 0.f, 0.f}, kUp, 4, 1), 1.f);
+  EXPECT_EQ(t.tracer.direct_visibility({0.f, 0.f, 0.f}, kUp, 4, 1), 0.f);
 }
 
 TEST(PathTracer, OpenSkyGivesPiTimesItsRadiance) {

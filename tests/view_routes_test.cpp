@@ -18,13 +18,17 @@ using testing::room;
 const char* const kDown = R"({"position": [1.4, 2, 1.4], "forward": [0, -1, 0], "up": [0, 0, 1],
                               "fov": 0.5, "width": 16, "height": 12})";
 
-// The room with two pictures on its walls: one of bytes that a browser reads, one of texels alone.
+// The room with a picture of texels alone on its walls, and another one of bytes that a browser
+// reads.
 Scene decorated_room() {
   Scene scene = room();
   Texture photo;
   photo.width = photo.height = 1;
   photo.texels = {{10, 20, 30, 255}};
-  scene.textures.push_back(photo);
+  photo.wrap_u = Wrap::mirror;
+  TextureRef& paper = scene.materials[MaterialId(0)].reflectance_texture;
+  paper.texture = scene.textures.push_back(photo);
+  paper.uv_transform = {2, 0, 5, 0, 3, 7};
   photo.mime_type = "image/jpeg";
   photo.encoded = {0xff, 0xd8, 0xff};
   scene.textures.push_back(photo);
@@ -81,6 +85,15 @@ TEST_F(ViewRoutes, GiveTheMeshItsLightAndItsPictures) {
   const WebReply topology = get("api/topology");
   ASSERT_EQ(topology.status, 200);
   const json header = json_of(*topology.body);
+  const json& paper = header["materials"][0]["texture"];
+  EXPECT_EQ(paper["id"], 0);
+  EXPECT_EQ(paper["wrapU"], "mirror");
+  EXPECT_EQ(paper["wrapV"], "repeat");
+  const auto uvs = array_of<Vec2>(*topology.body, "uvs");
+  const auto [u_low, u_high] = std::minmax_element(
+      uvs.begin(), uvs.end(), [](const Vec2& a, const Vec2& b) { return a.x < b.x; });
+  EXPECT_EQ(u_high->x, 7.f) << "2 x 1 + 5; others have none and stay 0";
+  EXPECT_EQ(u_low->x, 0.f);
   const std::string epoch = header["epoch"].dump();
   const std::string light = *get("api/light", {{"epoch", epoch}, {"since", "0"}}).body;
   EXPECT_FALSE(array_of<std::uint32_t>(light, "light").empty());
