@@ -37,6 +37,31 @@ TEST_F(ImageFiles, ExrKeepsEveryFloat) {
   EXPECT_EQ(back->pixels, image.pixels);
 }
 
+// OpenEXR would take two gigabytes for it.
+TEST_F(ImageFiles, ExrAttributesMustLieInTheFile) {
+  using namespace std::string_literals;
+  ASSERT_TRUE(write_image(path("a.exr"), gradient(17, 5)));
+  const Bytes good = *read_file(path("a.exr"));
+  const auto error_of = [](const Bytes& bytes) {
+    const auto image = decode_float_image(bytes, "a.exr");
+    return image ? "" : image.error().line();
+  };
+  ASSERT_EQ(error_of(good), "");
+  const std::string type = "chlist\0"s;
+  const auto at = std::search(good.begin(), good.end(), type.begin(), type.end()) - good.begin();
+  for (const std::uint8_t highest : {0x7f, 0xff}) {
+    Bytes bad = good;
+    bad[static_cast<std::size_t>(at) + type.size() + 3] = highest;
+    EXPECT_THAT(error_of(bad), HasSubstr("a.exr: an attribute of the EXR picture reaches beyond"));
+  }
+  for (std::size_t n = 4; n < good.size(); ++n)
+    EXPECT_NE(error_of({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(n)}), "");
+  // The second part of two.
+  const std::string parts =
+      "\x76\x2f\x31\x01\x02\x10\0\0a\0int\0\x04\0\0\0data\0b\0int\0\xff\xff\xff\x7f\0\0"s;
+  EXPECT_THAT(error_of({parts.begin(), parts.end()}), HasSubstr("reaches beyond"));
+}
+
 TEST_F(ImageFiles, PngHoldsSrgbOfTheClampedValues) {
   Image image(3, 1);
   // IEC 61966-2-1: linear 0.2158605 is encoded as 128 / 255, 0.001 as 0.0129.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <string>
 
@@ -69,8 +70,38 @@ Result<Image> decode_png_values(const Bytes& bytes, PngValues values, const std:
   return image;
 }
 
+// OpenEXR takes the memory that an attribute claims before it reads it, so it must lie in the file.
+// A header is a row of attributes (name, type, size, so many bytes) that an empty name ends; a file
+// of several parts has one for each.
+Result<void> check_exr_attributes(const Bytes& bytes, const std::string& where) {
+  constexpr std::size_t kFirst = 8;  // behind the magic number and the version
+  if (bytes.size() < kFirst) return {};
+  const bool several_parts = (bytes[5] & 0x10) != 0;
+  auto at = bytes.begin() + kFirst;
+  const auto left = [&] { return bytes.end() - at; };
+  do {
+    while (left() > 0 && *at != 0) {
+      for (int text = 0; text < 2; ++text) {
+        at = std::find(at, bytes.end(), 0);
+        if (left() > 0) ++at;
+      }
+      std::int32_t size = 0;
+      if (left() < std::ptrdiff_t{sizeof size}) return {};  // cut short, which OpenEXR tells
+      std::memcpy(&size, &*at, sizeof size);
+      at += sizeof size;
+      if (size < 0 || size > left())
+        return input_error("an attribute of the EXR picture reaches beyond the end of the file",
+                           where, "save it again");
+      at += size;
+    }
+    if (left() > 0) ++at;
+  } while (several_parts && left() > 0 && *at != 0);
+  return {};
+}
+
 // R, G, B or one grey channel Y, at full resolution. OpenEXR reports failure by exceptions.
 Result<Image> decode_exr(const Bytes& bytes, const std::string& where) {
+  if (auto fits = check_exr_attributes(bytes, where); !fits) return tl::unexpected(fits.error());
   try {
     Imf::StdISStream stream;
     stream.str(std::string(bytes.begin(), bytes.end()));
