@@ -5,9 +5,10 @@
 #
 # What the corpora grow by is kept in build/fuzz/corpus, inputs that fail go to build/fuzz/findings.
 # build/fuzz/runs has a line for each run of a target on that corpus: its CPU seconds and executions;
-# the table's last columns sum them. Fails when there is a finding. FUZZ_HANG (10) is how many seconds one input may take by the clock: more
-# where the machine is busy with other things. FUZZ_SEED makes runs from the same corpus alike, but not
-# equal: what an input is seen to cover differs a little each time.
+# the table's last columns sum them. Fails when there is a finding. FUZZ_HANG (10) is how many seconds
+# one input may take by the clock: more where the machine is busy with other things. FUZZ_SEED makes
+# runs from the same corpus alike, but not equal: what an input is seen to cover differs a little each
+# time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:?usage: scripts/fuzz.sh SECONDS [TARGET...]}

@@ -15,7 +15,10 @@
 #include "halflight/view/shared_exponent.h"
 #include "halflight/view/view_downloads.h"
 #include "halflight/view/view_layers.h"
+#include "halflight/view/view_queries.h"
+#include "halflight/view/view_session.h"
 #include "live_view.h"
+#include "quad_scene.h"
 #include "solved_scene.h"
 
 namespace halflight {

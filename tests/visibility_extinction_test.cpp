@@ -17,13 +17,17 @@ using testing::Dice;
 using testing::QuadScene;
 using testing::ShapeScene;
 
-float total_blocking_area(ShapeScene& shapes) {
-  shapes.end_mesh();
-  const World world(shapes.scene);
+float total_blocking_area(const Scene& scene) {
+  const World world(scene);
   const Surfaces surfaces = build_surfaces(world.geometry);
   float sum = 0.f;
   for (const float area : blocking_areas(world.scene, world.geometry, surfaces.bodies)) sum += area;
   return sum;
+}
+
+float total_blocking_area(ShapeScene& shapes) {
+  shapes.end_mesh();
+  return total_blocking_area(shapes.scene);
 }
 
 const Frame kStraight{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -68,11 +72,7 @@ TEST(Extinction, SheetsWithHolesBlockWhatIsLeftOfThem) {
   leaf.scene.materials[material].reflectance_texture.texture =
       leaf.scene.textures.push_back(quarter);
   leaf.quad(Vec3(0.f), Vec3(2, 0, 0), Vec3(0, 2, 0), material);
-  const World world(leaf.scene);
-  const Surfaces surfaces = build_surfaces(world.geometry);
-  float sum = 0.f;
-  for (const float area : blocking_areas(world.scene, world.geometry, surfaces.bodies)) sum += area;
-  EXPECT_NEAR(sum, 0.25f * 4.f / 2.f, 0.1f);
+  EXPECT_NEAR(total_blocking_area(leaf.scene), 0.25f * 4.f / 2.f, 0.1f);
 }
 
 // Bodies spread evenly through a slab, and rays through its middle. All numbers are means over the

@@ -21,6 +21,15 @@ MultiresTree make_tree(const ClusteredWorld& c, const MultiresOptions& options =
   return {c.world.scene, c.world.geometry, c.surfaces, c.clusters, options};
 }
 
+void expect_every_triangle_once(const MultiresTree& tree, const Geometry& geometry) {
+  std::multiset<TriangleId> held;
+  for (const TriangleBlock& block : tree.arrays().blocks)
+    for (int i = 0; i < 8; ++i)
+      if (block.used >> i & 1) held.insert(block.triangles[i]);
+  EXPECT_EQ(held.size(), geometry.triangles.size());
+  EXPECT_EQ(std::set<TriangleId>(held.begin(), held.end()).size(), held.size());
+}
+
 // Discs and cubes of all sizes in the unit cube; panes of half opacity among them.
 ShapeScene clutter(std::uint64_t seed, int n) {
   ShapeScene shapes;
@@ -82,12 +91,7 @@ class RandomTrees : public ::testing::TestWithParam<int> {
 
 TEST_P(RandomTrees, HoldEveryTriangleOnceAndInsideTheBoxesAboveIt) {
   const MultiresTree tree = make_tree(*world_);
-  std::multiset<TriangleId> held;
-  for (const TriangleBlock& block : tree.arrays().blocks)
-    for (int i = 0; i < 8; ++i)
-      if (block.used >> i & 1) held.insert(block.triangles[i]);
-  EXPECT_EQ(held.size(), world_->world.geometry.triangles.size());
-  EXPECT_EQ(std::set<TriangleId>(held.begin(), held.end()).size(), held.size());
+  expect_every_triangle_once(tree, world_->world.geometry);
   for (std::size_t slot = 0; slot < tree.arrays().contents.size(); ++slot) {
     const MultiresNode& node = tree.arrays().nodes[slot / 8];
     if (slot % 8 >= node.slot_count) continue;
@@ -151,12 +155,7 @@ TEST(MultiresTree, HoldsEveryTriangleOfAChainOfClusters) {
     if (i > 0) c.clusters.clusters[i - 1].clusters = {static_cast<std::uint32_t>(i)};
   }
   const MultiresTree tree = make_tree(c);
-  std::multiset<TriangleId> held;
-  for (const TriangleBlock& block : tree.arrays().blocks)
-    for (int i = 0; i < 8; ++i)
-      if (block.used >> i & 1) held.insert(block.triangles[i]);
-  EXPECT_EQ(held.size(), c.world.geometry.triangles.size());
-  EXPECT_EQ(std::set<TriangleId>(held.begin(), held.end()).size(), held.size());
+  expect_every_triangle_once(tree, c.world.geometry);
 }
 
 TEST(MultiresTree, OfNothingLetsEverythingThrough) {

@@ -5,8 +5,7 @@
 
 namespace halflight {
 
-std::size_t resident_bytes();       // now
-std::size_t peak_resident_bytes();  // at most, so far
+std::size_t peak_resident_bytes();  // most so far
 
 // Gives freed memory back to the system, as far as it can be.
 void return_free_memory();
