@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <string>
 
 #include "halflight/rays/path_tracer.h"
 #include "halflight/scene/procedural/doorway.h"
 #include "halflight/solve/importance.h"
+#include "quad_scene.h"
 #include "solved_scene.h"
 
 namespace halflight {
@@ -46,6 +49,47 @@ TEST(FeatureSizes, RuleThatMatchesNothingIsAnError) {
   const auto missing = check_rules({{"Unobtainium", "", 0.1f}}, *world, "rules.toml");
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().line().find("Unobtainium"), std::string::npos);
+}
+
+// A node's rule is about all below it; with a material, about what has both.
+TEST(FeatureSizes, NodesAreMatchedWithAllBelowThem) {
+  testing::QuadScene quads;
+  Node node;
+  node.name = "furniture";
+  const NodeId furniture = quads.scene.nodes.push_back(node);
+  const MaterialId wood = quads.material(0.5f), steel = quads.material(0.4f);
+  quads.scene.materials[wood].name = "wood";
+  quads.scene.materials[steel].name = "steel";
+  const auto quad = [&](float height, MaterialId material, const std::string& name, NodeId parent) {
+    quads.quad(Vec3(0.f, height, 0.f), Vec3(0.f, 0.f, 1.f), Vec3(1.f, 0.f, 0.f), material);
+    quads.scene.nodes.back().name = name;
+    quads.scene.nodes.back().parent = parent;
+  };
+  quad(0.f, wood, "floor", NodeId());
+  quad(1.f, wood, "table top", furniture);
+  quad(2.f, steel, "table leg", furniture);
+  const auto world = make_world(quads.scene);
+  const Surfaces surfaces = build_surfaces(world->geometry);
+  // Sizes of the floor, the top and the leg.
+  const auto sizes = [&](const std::vector<FeatureSizeRule>& rules) {
+    const FeatureSizes all(*world, surfaces, 0.1f, rules, std::nullopt);
+    std::array<float, 3> of{};
+    for (std::size_t i = 0; i < surfaces.surfaces.size(); ++i) {
+      const TriangleId t = surfaces.triangles[surfaces[SurfaceId(i)].first_triangle];
+      Element cell;
+      cell.side = side_of(SurfaceId(i), false);
+      of.at(world->geometry.instances[t].value) = all.of_cell(cell);
+    }
+    return of;
+  };
+  using Sizes = std::array<float, 3>;
+  EXPECT_EQ(sizes({{"", "table top", 0.02f}}), (Sizes{0.1f, 0.02f, 0.1f}));
+  EXPECT_EQ(sizes({{"", "table*", 0.02f}}), (Sizes{0.1f, 0.02f, 0.02f}));
+  EXPECT_EQ(sizes({{"", "furniture", 0.02f}}), (Sizes{0.1f, 0.02f, 0.02f}));
+  EXPECT_EQ(sizes({{"wood", "furniture", 0.02f}}), (Sizes{0.1f, 0.02f, 0.1f}));
+  const auto nowhere = check_rules({{"steel", "floor", 0.02f}}, *world, "rules.toml");
+  ASSERT_FALSE(nowhere);
+  EXPECT_NE(nowhere.error().line().find("material 'steel' and node 'floor'"), std::string::npos);
 }
 
 // Trying what each star covers would take longer than the universe has been there.
