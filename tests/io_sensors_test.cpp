@@ -42,6 +42,9 @@ TEST_F(SensorFiles, ErrorsNameFileAndLine) {
   EXPECT_THAT(message("1 2 nan 0 1 0\n"), HasSubstr("s.txt:1: 'nan'"));
   EXPECT_THAT(message("1 2 3 0 0 0\n"), HasSubstr("s.txt:1: the normal has no length"));
   EXPECT_THAT(message("# nothing\n"), HasSubstr("holds no sensor"));
+  // Rays cannot begin there, and a square of the normal is not exact.
+  EXPECT_THAT(message("2e18 2 3 0 1 0\n"), HasSubstr("s.txt:1: '2e18'"));
+  EXPECT_THAT(message("1 2 3 1e-155 0 0\n"), HasSubstr("s.txt:1: the normal has no length"));
   EXPECT_THAT(message("1e400 2 3 0 1 0\n"), HasSubstr("s.txt:1: '1e400'"));
   const auto absent = read_sensors(path("absent.txt"));
   ASSERT_FALSE(absent);

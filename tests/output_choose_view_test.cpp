@@ -51,6 +51,25 @@ TEST_F(ChooseView, AutoPrefersACameraOfTheScene) {
   EXPECT_EQ(choose("auto")->camera.position.x, 99.f);
 }
 
+TEST_F(ChooseView, ACameraThatCannotLookIsAnError) {
+  geometry_.cameras[0].forward = Vec3(0.f);
+  EXPECT_THAT(choose("door").error().line(), HasSubstr("'door' has no direction"));
+  EXPECT_FALSE(choose("0"));
+  EXPECT_EQ(choose("auto")->camera.position.x, 2.f);
+  geometry_.cameras[1].position.x = 2e18f;
+  EXPECT_FALSE(choose("window"));
+  EXPECT_EQ(choose("auto")->camera.position.x, 99.f);
+  EXPECT_FALSE(choose("1e18,0,0,0,0,0,45"));
+  EXPECT_TRUE(choose("1e10,0,0,0,0,0,45"));  // centimetres
+}
+
+TEST_F(ChooseView, NamesOfTheFileLeaveMessagesOneLine) {
+  geometry_.cameras[0].name = "do\nor\x1b[31m" + std::string(5000, 'x');
+  const std::string line = choose("roof").error().line();
+  EXPECT_EQ(line.find_first_of("\n\x1b"), std::string::npos);
+  EXPECT_LT(line.size(), 1000u);
+}
+
 TEST_F(ChooseView, NumbersAreInTheCoordinatesOfTheFile) {
   const auto view = choose("100,200,300,100,200,400,60");
   ASSERT_TRUE(view);

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "halflight/scene/lint.h"
 
 namespace halflight {
@@ -120,6 +122,45 @@ TEST(Summary, MeanReflectanceIsWeightedByAreaAndLeavesEmittersOut) {
   const SceneSummary s = summarize(scene, flatten(scene));
   EXPECT_NEAR(s.reflectance.g, (0.5f * 1.f + 0.1f * 0.5f) / 1.5f, 1e-6f);
   EXPECT_NEAR(s.area, 2.5, 1e-6);
+}
+
+// A node of no size leaves a lamp or a camera nowhere to point; one that is only tiny does not.
+TEST(Lint, LightsAndCamerasNeedADirectionAndAPlace) {
+  const auto with = [](const Mat4& local, Light::Kind kind) {
+    Scene scene = lamp_over_floor();
+    Node node;
+    node.local = local;
+    Light light;
+    light.kind = kind;
+    node.light = scene.lights.push_back(light);
+    node.camera = scene.cameras.push_back({});
+    scene.nodes.push_back(node);
+    return scene;
+  };
+  const auto scaled = [](double s) {
+    return Mat4(glm::dvec4(s, 0, 0, 0), glm::dvec4(0, s, 0, 0), glm::dvec4(0, 0, s, 0),
+                glm::dvec4(0, 0, 0, 1));
+  };
+  Mat4 far(1.0);
+  far[3].x = 1e20;
+  for (const auto kind : {Light::Kind::spot, Light::Kind::directional}) {
+    for (const Mat4& local : {scaled(0.0), scaled(std::numeric_limits<double>::infinity())}) {
+      const Scene scene = with(local, kind);
+      EXPECT_THAT(codes(scene),
+                  testing::IsSupersetOf({"light-without-place", "camera-without-place"}));
+      EXPECT_THAT(flatten(scene).lights, IsEmpty());
+    }
+    for (const double tiny : {1e-30, 1e-170}) {
+      const Geometry g = flatten(with(scaled(tiny), kind));
+      ASSERT_EQ(g.lights.size(), 1u);
+      EXPECT_EQ(g.lights[0].direction, Vec3(0.f, 0.f, -1.f));
+      EXPECT_TRUE(can_look(g.cameras[0]));
+    }
+  }
+  EXPECT_THAT(flatten(with(far, Light::Kind::point)).lights, IsEmpty());
+  EXPECT_FALSE(can_look(flatten(with(far, Light::Kind::point)).cameras[0]));
+  EXPECT_EQ(flatten(with(far, Light::Kind::directional)).lights.size(), 1u);
+  EXPECT_EQ(flatten(with(scaled(0.0), Light::Kind::point)).lights.size(), 1u);
 }
 
 }  // namespace

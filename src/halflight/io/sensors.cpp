@@ -16,7 +16,9 @@ namespace {
 
 constexpr std::string_view kSpaces = " \t\r\v\f,;";
 constexpr std::size_t kColumns = 6;
-constexpr double kLargest = 1e30;  // coordinates are squared in single precision
+// Rays begin and end within 1e18 m, and no unit is longer than 1 km; squares of shorter normals are
+// not exact.
+constexpr double kLargest = 1e12, kShortestNormal = 1e-100;
 
 // The numbers of one line without its comment.
 Result<std::vector<double>> numbers(std::string_view line, const std::string& where) {
@@ -44,7 +46,7 @@ Result<Sensor> to_sensor(const std::vector<double>& v, const std::string& where)
     return input_error(fmt::format("{} numbers instead of 6", v.size()), where,
                        "a sensor is x y z nx ny nz");
   const Sensor sensor{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
-  if (!(glm::length(sensor.normal) > 0.0))
+  if (!(glm::length(sensor.normal) > kShortestNormal))
     return input_error("the normal has no length", where,
                        "let nx ny nz point to the side that the sensor reads");
   return sensor;

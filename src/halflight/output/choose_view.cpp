@@ -60,14 +60,14 @@ std::string known_cameras(const Geometry& geometry) {
   return names;
 }
 
-}  // namespace
-
-Result<View> choose_view(const std::string& wish, const Scene& scene, const Geometry& geometry,
+Result<View> wished_view(const std::string& wish, const Scene& scene, const Geometry& geometry,
                          const std::function<PlacedCamera()>& automatic) {
   const auto& cameras = geometry.cameras;
-  if (wish == "auto") return View{cameras.empty() ? automatic() : cameras.front()};
-  const auto named = std::find_if(cameras.begin(), cameras.end(),
-                                  [&](const PlacedCamera& c) { return c.name == wish; });
+  if (wish == "auto") {
+    const auto first = std::ranges::find_if(cameras, can_look);
+    return View{first != cameras.end() ? *first : automatic()};
+  }
+  const auto named = std::ranges::find(cameras, wish, &PlacedCamera::name);
   if (named != cameras.end()) return View{*named};
   if (const auto index = whole_number<std::size_t>(wish); index && *index < cameras.size())
     return View{cameras[*index]};
@@ -76,6 +76,17 @@ Result<View> choose_view(const std::string& wish, const Scene& scene, const Geom
     return given_view(*numbers, scene.to_world);
   return input_error(fmt::format("there is no camera '{}'", wish), "--camera",
                      known_cameras(geometry));
+}
+
+}  // namespace
+
+Result<View> choose_view(const std::string& wish, const Scene& scene, const Geometry& geometry,
+                         const std::function<PlacedCamera()>& automatic) {
+  Result<View> view = wished_view(wish, scene, geometry, automatic);
+  if (view && !can_look(view->camera))
+    return input_error(fmt::format("the camera '{}' has no direction or no usable place", wish),
+                       "--camera", "give its node a scale of 1, or another view");
+  return view;
 }
 
 }  // namespace halflight

@@ -5,11 +5,16 @@
 namespace halflight {
 namespace {
 
-// Metres from the origin: beyond, areas and distances overflow single precision somewhere.
-constexpr float kFarthest = 1e9f;
-
 bool usable(const Vec3& p) {  // false for what is not a number, too
   return glm::all(glm::lessThanEqual(glm::abs(p), Vec3(kFarthest)));
+}
+
+// Where the node turns an axis, unit; zero where it leaves it no length.
+Vec3 turned(const Mat4& world, const glm::dvec3& axis) {
+  const glm::dvec3 v = glm::dmat3(world) * axis;
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (!(largest > 0.0) || !is_finite(Vec3(v / largest))) return Vec3(0.f);
+  return Vec3(glm::normalize(v / largest));
 }
 
 void append_instance(const Scene& scene, const PrimitiveInstance& what, const Mat4& world,
@@ -85,7 +90,7 @@ PunctualLight place(const Light& light, const Mat4& world) {
   PunctualLight placed;
   placed.kind = light.kind;
   placed.position = transform_point(world, Vec3(0.f));
-  placed.direction = glm::normalize(transform_vector(world, Vec3(0.f, 0.f, -1.f)));
+  placed.direction = turned(world, {0.0, 0.0, -1.0});
   placed.intensity = light.intensity;
   placed.range = light.range;
   placed.cos_inner = std::cos(light.inner_cone_angle);
@@ -93,12 +98,18 @@ PunctualLight place(const Light& light, const Mat4& world) {
   return placed;
 }
 
+bool can_shine(const PunctualLight& light) {
+  const bool has_place = light.kind == Light::Kind::directional || usable(light.position);
+  const bool has_direction = light.kind == Light::Kind::point || light.direction != Vec3(0.f);
+  return has_place && has_direction;
+}
+
 PlacedCamera place(const Camera& camera, const Mat4& world) {
   PlacedCamera placed;
   placed.name = camera.name;
   placed.position = transform_point(world, Vec3(0.f));
-  placed.forward = glm::normalize(transform_vector(world, Vec3(0.f, 0.f, -1.f)));
-  placed.up = glm::normalize(transform_vector(world, Vec3(0.f, 1.f, 0.f)));
+  placed.forward = turned(world, {0.0, 0.0, -1.0});
+  placed.up = turned(world, {0.0, 1.0, 0.0});
   placed.perspective = camera.perspective;
   placed.vertical_fov = camera.vertical_fov;
   placed.aspect = camera.aspect;
@@ -172,8 +183,12 @@ Geometry flatten(const Scene& scene) {
     const Node& node = scene.nodes[id];
     const Mat4 world = scene.to_world * global[id];
     if (node.light.valid()) {
-      g.lights.push_back(place(scene.lights[node.light], world));
-      g.lights.back().light = node.light;
+      PunctualLight light = place(scene.lights[node.light], world);
+      light.light = node.light;
+      if (can_shine(light))
+        g.lights.push_back(light);
+      else
+        ++g.lights_without_place;
     }
     if (node.camera.valid()) {
       g.cameras.push_back(place(scene.cameras[node.camera], world));
@@ -194,6 +209,14 @@ Geometry flatten(const Scene& scene) {
     }
   }
   return g;
+}
+
+bool can_look(const PlacedCamera& camera) {
+  const auto is_unit = [](const Vec3& v) { return std::abs(glm::dot(v, v) - 1.f) < 1e-3f; };
+  return usable(camera.position) && is_unit(camera.forward) && is_unit(camera.up) &&
+         std::isfinite(camera.aspect) &&
+         (camera.perspective ? camera.vertical_fov > 0.f && camera.vertical_fov < kPi
+                             : camera.half_height > 0.f && camera.half_height <= kFarthest);
 }
 
 Geometry with_lights_of(const Scene& scene, Geometry geometry) {

@@ -15,6 +15,9 @@ using TriangleId = Id<struct TriangleTag>;
 using VertexId = Id<struct VertexTag>;
 using InstanceId = Id<struct InstanceTag>;
 
+// Metres from the origin: beyond, areas and distances overflow single precision somewhere.
+inline constexpr float kFarthest = 1e9f;
+
 // One placed primitive: what one lit primitive of the output stands for.
 struct PrimitiveInstance {
   NodeId node;
@@ -61,7 +64,10 @@ struct Geometry {
   std::vector<PunctualLight> lights;
   std::vector<PlacedCamera> cameras;
   Bounds3f bounds;
-  std::size_t degenerate_triangles = 0;  // left out: zero area, not finite, or beyond 1e9 m
+  // Left out: of zero area, not finite, or beyond kFarthest; lights that their node leaves without
+  // a direction or puts beyond it.
+  std::size_t degenerate_triangles = 0;
+  std::size_t lights_without_place = 0;
 
   Vec3 normal(VertexId v) const { return normals.empty() ? Vec3(0.f) : normals[v]; }
   Vec2 uv(std::size_t set, VertexId v) const { return uvs[set].empty() ? Vec2(0.f) : uvs[set][v]; }
@@ -91,6 +97,9 @@ struct Geometry {
 };
 
 Geometry flatten(const Scene& scene);
+// Whether the camera has a place within kFarthest, directions and an angle: nodes of no size or far
+// away leave it without.
+bool can_look(const PlacedCamera& camera);
 // The same geometry with the punctual lights as bright as in this scene.
 Geometry with_lights_of(const Scene& scene, Geometry geometry);
 

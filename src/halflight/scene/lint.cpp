@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -52,6 +53,20 @@ void check_size(const Bounds3f& bounds, std::vector<Finding>& findings) {
                      "only exact to {:.2g} m",
                      glm::length(bounds.center()), 0x1p-24f * glm::length(bounds.center())),
          "move it to the origin"});
+}
+
+void check_fixtures(const Geometry& g, std::vector<Finding>& findings) {
+  if (g.lights_without_place > 0)
+    findings.push_back(
+        {Severity::warning, "light-without-place",
+         fmt::format("{} lights have no direction or no usable place and are left out",
+                     g.lights_without_place),
+         "give their nodes a scale of 1"});
+  const auto blind = std::ranges::count_if(g.cameras, std::not_fn(can_look));
+  if (blind > 0)
+    findings.push_back({Severity::warning, "camera-without-place",
+                        fmt::format("{} cameras have no direction or no usable place", blind),
+                        "give their nodes a scale of 1"});
 }
 
 // Nothing of the scene lies before the plane of an emitter that shines to the front only.
@@ -173,6 +188,7 @@ std::vector<Finding> lint(const Scene& scene, const Geometry& g, const SceneSumm
   check_reflectance(scene, summary, findings);
   check_textures(scene, findings);
   check_triangles(g, findings);
+  check_fixtures(g, findings);
   check_size(g.bounds, findings);
   return findings;
 }

@@ -19,7 +19,8 @@ struct Finding {
 };
 
 // Codes: empty, no-light, emitter-faces-away, dim-emitter, reflectance-above-one, nearly-white,
-// missing-texture, degenerate-triangles, duplicate-triangles, suspicious-size, far-from-origin.
+// missing-texture, degenerate-triangles, duplicate-triangles, light-without-place,
+// camera-without-place, suspicious-size, far-from-origin.
 std::vector<Finding> lint(const Scene& scene, const Geometry& geometry,
                           const SceneSummary& summary);
 

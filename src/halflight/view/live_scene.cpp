@@ -76,7 +76,9 @@ void make_live_state(LiveScene& live, const std::shared_ptr<const Surfaces>& sur
 }
 
 PlacedCamera choose_first_view(const World& world) {
-  if (!world.geometry.cameras.empty()) return world.geometry.cameras.front();
+  const auto& cameras = world.geometry.cameras;
+  const auto first = std::ranges::find_if(cameras, can_look);
+  if (first != cameras.end()) return *first;
   if (!world.geometry.triangles.empty()) return automatic_view(PathTracer(world));
   return {};
 }

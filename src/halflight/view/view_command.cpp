@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kLargestSide = 8192;
-constexpr float kLargestFactor = 1e4f, kFarthest = 1e7f, kLongestUnit = 1e3f;
+constexpr float kLargestFactor = 1e4f, kFarthestPlace = 1e7f, kLongestUnit = 1e3f;
 constexpr std::size_t kMostGroups = 1024;
 
 // Reads members by name and remembers the first that is wrong, or that nobody knows.
@@ -87,7 +87,7 @@ Result<json> parse_object(std::string_view text) {
 Result<ViewOfInterest> to_view(const json& object) {
   CommandReader read(object);
   ViewOfInterest view;
-  view.camera.position = read.vector("position", kFarthest).value_or(Vec3(0.f));
+  view.camera.position = read.vector("position", kFarthestPlace).value_or(Vec3(0.f));
   view.camera.forward = read.vector("forward", kLongestUnit).value_or(Vec3(0.f, 0.f, -1.f));
   view.camera.up = read.vector("up", kLongestUnit).value_or(Vec3(0.f, 1.f, 0.f));
   view.camera.vertical_fov = static_cast<float>(read.number("fov", 0.01, 3.1).value_or(0.8));
@@ -145,7 +145,7 @@ Result<ViewCommand> parse_view_command(std::string_view text) {
   if (const auto n = read.number("links", 0.0, 1e9)) command.links = static_cast<std::size_t>(*n);
   if (const auto n = read.number("node", 0.0, 4e9))
     command.node = NodeId(static_cast<std::size_t>(*n));
-  command.offset = read.vector("offset", kFarthest);
+  command.offset = read.vector("offset", kFarthestPlace);
   if (const json* mode = read.find("visibility")) {
     for (const NamedVisibilityMode& known : kVisibilityModes)
       if (*mode == std::string(known.name)) command.visibility = known.mode;

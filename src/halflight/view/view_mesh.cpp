@@ -300,7 +300,8 @@ std::string topology_packet(const ViewMesh& mesh, const World& world, const Plac
   for (const Material& m : scene.materials) h["materials"].push_back(material_json(scene, m));
   h["nodes"] = nodes_json(world);
   h["cameras"] = json::array();
-  for (const PlacedCamera& c : world.geometry.cameras) h["cameras"].push_back(camera_json(c));
+  for (const PlacedCamera& c : world.geometry.cameras)
+    if (can_look(c)) h["cameras"].push_back(camera_json(c));
   h["firstView"] = camera_json(first);
   packet.add<Vec3>("positions", "f32", mesh.positions);
   packet.add<ViewTriangle>("indices", "u32", mesh.triangles);
