@@ -106,6 +106,15 @@ TEST_F(CheckpointFile, SaysWhatIsWrong) {
   EXPECT_EQ(failure(), "");
 }
 
+// A few bytes for each chunk of 64 KiB would take gigabytes before they are looked at.
+TEST_F(CheckpointFile, NothingButZerosIsRefusedForItsSize) {
+  SectionWriter writer;
+  writer.add("floats", std::vector<float>(20'000'000));
+  ASSERT_TRUE(writer.write(path_));
+  EXPECT_LT(bytes().size(), 300'000u);
+  EXPECT_THAT(failure(), HasSubstr("damaged (at its lengths)"));
+}
+
 TEST_F(CheckpointFile, FlippedBitsAreNoticed) {
   SectionWriter writer;
   writer.add("floats", numbers(20));

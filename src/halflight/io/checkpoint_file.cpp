@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 16;
 constexpr int kLevel = 1;  // higher ones take longer than the disk would for what they save
+// Arrays are up to ten times as long as the file of a solve. Nothing but zeros packs to a 3000th.
+constexpr std::size_t kMostUnpacked = 256;
 constexpr std::size_t kHeader = 8 + 4 + 4 + 8 + 8;
 
 struct FreeCompressor {
@@ -50,6 +52,9 @@ void unsort_bytes(const std::byte* from, std::size_t length, std::size_t item, s
 }
 
 std::size_t chunks_of(std::size_t length) { return (length + kChunk - 1) / kChunk; }
+std::size_t length_of_chunk(std::size_t length, std::size_t chunk) {
+  return std::min(kChunk, length - chunk * kChunk);
+}
 
 std::uint64_t checksum(std::string_view name, std::uint32_t item, std::uint64_t length,
                        std::span<const std::uint8_t> stored) {
@@ -209,6 +214,9 @@ Result<SectionReader> SectionReader::parse(Bytes bytes, const std::string& where
     reader.sections_.push_back(section);
   }
   if (cursor.left() > 0) return reader.damaged("end");
+  std::size_t unpacked = 0;
+  for (const Section& section : reader.sections_) unpacked += section.length;
+  if (unpacked / kMostUnpacked > length) return reader.damaged("lengths");
   return reader;
 }
 
@@ -218,20 +226,29 @@ const SectionReader::Section* SectionReader::find(std::string_view name, std::si
   return nullptr;
 }
 
-Result<void> SectionReader::unpack(const Section& section, std::span<std::byte> to) const {
+Result<SectionReader::Frames> SectionReader::frames_of(const Section& section) const {
   Cursor cursor(section.stored);
-  std::vector<std::span<const std::uint8_t>> frames(chunks_of(section.length));
+  Frames frames(chunks_of(section.length));
   std::vector<std::uint32_t> lengths(frames.size());
   for (std::uint32_t& length : lengths) length = cursor.number<std::uint32_t>();
-  for (std::size_t c = 0; c < frames.size(); ++c) frames[c] = cursor.take(lengths[c]);
+  for (std::size_t c = 0; c < frames.size(); ++c) {
+    frames[c] = cursor.take(lengths[c]);
+    if (ZSTD_getFrameContentSize(frames[c].data(), frames[c].size()) !=
+        length_of_chunk(section.length, c))
+      return damaged(section.name);
+  }
   if (cursor.ran_short() || cursor.left() > 0) return damaged(section.name);
+  return frames;
+}
 
+Result<void> SectionReader::unpack(const Section& section, const Frames& frames,
+                                   std::span<std::byte> to) const {
   std::atomic<bool> intact{true};
   parallel_ranges(frames.size(), 4, [&](std::size_t first, std::size_t last) {
     const std::unique_ptr<ZSTD_DCtx, FreeDecompressor> context(ZSTD_createDCtx());
     std::vector<std::byte> sorted(kChunk);
     for (std::size_t c = first; c < last; ++c) {
-      const std::size_t length = std::min(kChunk, section.length - c * kChunk);
+      const std::size_t length = length_of_chunk(section.length, c);
       const std::size_t unpacked = ZSTD_decompressDCtx(context.get(), sorted.data(), sorted.size(),
                                                        frames[c].data(), frames[c].size());
       if (ZSTD_isError(unpacked) != 0 || unpacked != length) {

@@ -73,9 +73,11 @@ class SectionReader {
     static_assert(std::is_trivially_copyable_v<T>);
     const Section* section = find(name, sizeof(T));
     if (!section) return damaged(name);
-    // At most a chunk for each few bytes that are stored.
+    const auto frames = frames_of(*section);
+    if (!frames) return tl::unexpected(frames.error());
     std::vector<T> items(section->length / sizeof(T));
-    if (auto unpacked = unpack(*section, std::as_writable_bytes(std::span(items))); !unpacked)
+    if (auto unpacked = unpack(*section, *frames, std::as_writable_bytes(std::span(items)));
+        !unpacked)
       return tl::unexpected(unpacked.error());
     return items;
   }
@@ -91,7 +93,10 @@ class SectionReader {
     std::size_t length = 0;                // of the array, bytes
     std::span<const std::uint8_t> stored;  // into bytes_
   };
-  Result<void> unpack(const Section& section, std::span<std::byte> to) const;
+  // Stored chunks, each of which says that it holds as much as it should.
+  using Frames = std::vector<std::span<const std::uint8_t>>;
+  Result<Frames> frames_of(const Section& section) const;
+  Result<void> unpack(const Section& section, const Frames& frames, std::span<std::byte> to) const;
   const Section* find(std::string_view name, std::size_t item) const;
 
   std::string where_;

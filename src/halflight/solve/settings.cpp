@@ -52,7 +52,7 @@ bool find_in(const std::array<std::pair<T, std::string_view>, n>& table, std::st
   return false;
 }
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 bool from_json(const Json& j, float& v) {
   if (!j.is_number()) return false;
@@ -90,7 +90,7 @@ bool from_json(const Json& j, ViewOfInterest& v) {
     return false;
   v.width = static_cast<int>(width);
   v.height = static_cast<int>(height);
-  return true;
+  return can_look(c);
 }
 Json to_json(const PixelFeatureSize& p) { return {to_json(p.view), p.pixels}; }
 bool from_json(const Json& j, PixelFeatureSize& p) {
