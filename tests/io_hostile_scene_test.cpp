@@ -5,8 +5,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include "gltf_builder.h"
+#include "halflight/io/encode_png.h"
 #include "halflight/io/load_scene.h"
 #include "halflight/io/read_file.h"
 #include "halflight/scene/geometry.h"
@@ -98,6 +100,59 @@ TEST(HostileScene, SmallFilesThatClaimGigabytesAreRefused) {
                   {{"POSITION", placed.add_positions(std::vector<float>(300000, 0.5f))}}}}}}});
   for (int i = 0; i < 2000; ++i) placed.add_root({{"mesh", 0}});
   EXPECT_THAT(refusal(folder, placed.glb()), HasSubstr("placed vertices"));
+}
+
+// Images of the same bytes are one picture, and pictures that lie over each other are counted.
+TEST(HostileScene, PicturesAreDecodedOnceAndCounted) {
+  const TemporaryFolder folder;
+  const std::array<std::uint8_t, 4> texel{1, 2, 3, 255};
+  const Bytes picture = encode_png(1, 1, {&texel, 1});
+  const auto scene_of = [&](int images, const auto& image) {
+    GltfBuilder b;
+    b.add_triangle();
+    b.json["buffers"] = {{{"byteLength", b.data().size()}}};
+    for (int i = 0; i < images; ++i) {
+      b.add("images", image(b, i));
+      b.add("textures", {{"source", i}});
+      json primitive = b.json["meshes"][0]["primitives"][0];
+      primitive["material"] =
+          b.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
+      b.json["meshes"][0]["primitives"].push_back(primitive);
+    }
+    b.json.erase("buffers");
+    return b.glb();
+  };
+  folder.write("texture.png", {reinterpret_cast<const char*>(picture.data()), picture.size()});
+  const Result<Scene> named =
+      load_scene(folder.write("named.glb", scene_of(3, [](GltfBuilder&, int i) {
+                                return json{{"uri", i == 1 ? "./texture.png" : "texture.png"}};
+                              })));
+  ASSERT_TRUE(named) << named.error().line();
+  EXPECT_EQ(named->textures.size(), 1u);
+
+  // Its header claims the largest picture that may be: 16384 x 8192.
+  Bytes vast = picture;
+  vast.resize(vast.size() + 24);  // views of other lengths
+  vast[18] = 0x40, vast[19] = 0, vast[22] = 0x20, vast[23] = 0;
+  const auto sum = static_cast<std::uint32_t>(crc32(0, vast.data() + 12, 17));
+  for (int i = 0; i < 4; ++i) vast[29 + i] = static_cast<std::uint8_t>(sum >> (24 - 8 * i));
+  std::size_t view = 0;
+  const std::string bomb = scene_of(24, [&](GltfBuilder& b, int i) {
+    if (i == 0) view = b.add_view(vast);
+    json part = b.json["bufferViews"][view];
+    part["byteLength"] = vast.size() - static_cast<std::size_t>(i);
+    return json{{"bufferView", b.add("bufferViews", part)}, {"mimeType", "image/png"}};
+  });
+  EXPECT_THAT(refusal(folder, bomb), HasSubstr("texels"));
+}
+
+TEST(HostileScene, LongNamesAreRefused) {
+  const TemporaryFolder folder;
+  GltfBuilder b;
+  b.add_triangle({{"name", std::string(4096, 'a')}});
+  EXPECT_EQ(refusal(folder, b.glb()), "");
+  b.json["meshes"][0]["name"] = std::string(4097, 'a');
+  EXPECT_THAT(refusal(folder, b.glb()), HasSubstr("meshes/0/name: this has more than 4096 bytes"));
 }
 
 TEST(HostileScene, PicturesOutsideTheirBufferAreRefused) {

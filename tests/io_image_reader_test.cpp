@@ -122,5 +122,60 @@ TEST(ImageReader, CutOffPicturesAreRefusedOrPartlyRead) {
   }
 }
 
+// An uncompressed TGA of 24 bits; `kind` 10 packs runs.
+Bytes tga(std::uint8_t kind, std::uint16_t width, std::uint16_t height, std::size_t pixels) {
+  Bytes bytes(18);
+  bytes[2] = kind;
+  bytes[12] = static_cast<std::uint8_t>(width & 255);
+  bytes[13] = static_cast<std::uint8_t>(width >> 8);
+  bytes[14] = static_cast<std::uint8_t>(height & 255);
+  bytes[15] = static_cast<std::uint8_t>(height >> 8);
+  bytes[16] = 24;
+  for (std::size_t i = 0; i < 3 * pixels; ++i) bytes.push_back(static_cast<std::uint8_t>(i % 251));
+  return bytes;
+}
+
+// stb_image would show what the memory held before.
+TEST(ImageReader, TgaThatEndsEarlyIsRefused) {
+  const Bytes whole = tga(2, 20, 30, 600);
+  const Result<Image8> image = decode_image(whole, "whole.tga");
+  ASSERT_TRUE(image) << image.error().line();
+  EXPECT_EQ(image->texels[20 * 29], (Texel{2, 1, 0, 255}));  // bottom row first, blue first
+  for (std::size_t length = 18; length < whole.size(); length += 7) {
+    const Result<Image8> cut = decode_image(std::span(whole).first(length), "cut.tga");
+    ASSERT_FALSE(cut) << length;
+    EXPECT_THAT(cut.error().line(), testing::HasSubstr("cut.tga: the picture was cut short"));
+  }
+  Bytes runs = tga(10, 20, 30, 0);
+  for (int i = 0; i < 5; ++i) runs.insert(runs.end(), {0xf7, 1, 2, 3});  // 120 pixels each
+  EXPECT_TRUE(decode_image(runs, "runs.tga"));
+  runs.pop_back();
+  EXPECT_FALSE(decode_image(runs, "runs.tga"));
+  EXPECT_FALSE(image_size(tga(2, 16384, 8192, 0), "big.tga"));
+}
+
+// The palette has one colour and the pixels ask for the 200th.
+TEST(ImageReader, ColoursThatAPaletteLacksAreBlack) {
+  Bytes bmp(58);
+  const auto put = [&](std::size_t at, std::uint8_t value) { bmp[at] = value; };
+  put(0, 'B'), put(1, 'M'), put(10, 58), put(14, 40), put(18, 4), put(22, 1), put(26, 1);
+  put(28, 8), put(46, 1), put(54, 9), put(55, 9), put(56, 9);
+  bmp.insert(bmp.end(), {0, 200, 201, 255});
+  const Result<Image8> image = decode_image(bmp, "test.bmp");
+  ASSERT_TRUE(image) << image.error().line();
+  EXPECT_EQ(image->texels[0], (Texel{9, 9, 9, 255}));
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(image->texels[i], (Texel{0, 0, 0, 255}));
+}
+
+TEST(ImageReader, SizesAreKnownFromHeaders) {
+  const auto is = [](const Result<ImageSize>& size, std::size_t width, std::size_t height) {
+    return size && size->width == width && size->height == height;
+  };
+  EXPECT_TRUE(is(image_size(encode_png(3, 2, std::vector<Texel>(6)), "a"), 3, 2));
+  EXPECT_TRUE(is(image_size(encode_jpeg(16, 8, Bytes(16 * 8 * 3, 77)), "a"), 16, 8));
+  EXPECT_TRUE(is(image_size(tga(2, 5, 7, 35), "a"), 5, 7));
+  EXPECT_FALSE(image_size(Bytes(100, 7), "a"));
+}
+
 }  // namespace
 }  // namespace halflight

@@ -92,13 +92,24 @@ JsonCursor GltfDocument::element(std::string_view array, const JsonCursor& from)
   return (*elements)[index];
 }
 
-Result<Bytes> GltfDocument::resolve_uri(const std::string& uri, const std::string& where) const {
-  if (uri.starts_with("data:")) return decode_data_uri(uri, where);
+Result<ByteSpan> GltfDocument::resolve_uri(const std::string& uri, const std::string& where) {
+  if (uri.starts_with("data:")) return keep(where, decode_data_uri(uri, where));
   if (uri.find("://") != std::string::npos)
     return input_error("'" + uri + "' is not a file", where, "save the scene with its files");
-  return read_file(path_.parent_path() / percent_decoded(uri)).map_error([&](Error error) {
+  const std::filesystem::path file = path_.parent_path() / percent_decoded(uri);
+  std::error_code missing;
+  const std::string one_name = std::filesystem::canonical(file, missing).string();
+  if (const auto known = resources_.find(one_name); !missing && known != resources_.end())
+    return known->second;
+  return keep(one_name, read_file(file).map_error([&](Error error) {
     error.what += ", named by " + where;
     return error;
+  }));
+}
+
+Result<ByteSpan> GltfDocument::keep(const std::string& name, Result<Bytes> bytes) {
+  return bytes.map([&](Bytes& content) {
+    return ByteSpan(resources_.insert_or_assign(name, std::move(content)).first->second);
   });
 }
 

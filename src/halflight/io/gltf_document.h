@@ -32,8 +32,9 @@ class GltfDocument {
   ByteSpan buffer_view(const JsonCursor& index);
   // byteStride of the view; 0 when its elements lie packed.
   std::size_t stride(const JsonCursor& view_index) const;
-  // The content of a data URI or of a file beside the scene.
-  Result<Bytes> resolve_uri(const std::string& uri, const std::string& where) const;
+  // The content of a data URI or of a file beside the scene, which is read once however often it
+  // is named. `where` is the path of the URI.
+  Result<ByteSpan> resolve_uri(const std::string& uri, const std::string& where);
 
  private:
   void split_glb();
@@ -41,13 +42,15 @@ class GltfDocument {
   void check_version() const;
   ByteSpan buffer(const JsonCursor& index);
   ByteSpan part_of_buffer(const JsonCursor& view);
+  Result<ByteSpan> keep(const std::string& name, Result<Bytes> bytes);
 
   std::filesystem::path path_;
   Bytes file_;
   ByteSpan binary_chunk_;
   bool has_binary_chunk_ = false;
   nlohmann::json json_;
-  std::map<std::size_t, Bytes> buffers_;       // those that are not the binary chunk
+  std::map<std::string, Bytes> resources_;     // by file, or by the place of a data URI
+  std::map<std::size_t, ByteSpan> buffers_;    // those that are not the binary chunk
   std::map<std::size_t, Bytes> decompressed_;  // by buffer view
   ReadBudget decoded_bytes_{"bytes of compressed geometry", kMaxDecodedBytes};
 };

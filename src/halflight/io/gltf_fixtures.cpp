@@ -13,7 +13,7 @@ float positive(const JsonCursor& number) {
 
 Camera read_camera(const JsonCursor& json) {
   Camera camera;
-  camera.name = json.string_or("name", "");
+  camera.name = json.name();
   const std::string type = json.at("type").string();
   camera.perspective = type == "perspective";
   if (camera.perspective) {
@@ -45,7 +45,7 @@ void read_cone(const JsonCursor& json, Light& light) {
 
 Light read_light(const JsonCursor& json) {
   Light light;
-  light.name = json.string_or("name", "");
+  light.name = json.name();
   const std::string type = json.at("type").string();
   if (type == "point")
     light.kind = Light::Kind::point;

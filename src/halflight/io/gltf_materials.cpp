@@ -60,7 +60,7 @@ MaterialId GltfMaterials::default_material() {
 
 Material GltfMaterials::read_material(const JsonCursor& json) {
   Material m;
-  m.name = json.string_or("name", "");
+  m.name = json.name();
   m.alpha_mode = read_alpha_mode(json);
   m.alpha_cutoff = json.float_or("alphaCutoff", 0.5f);
   m.double_sided = json.boolean_or("doubleSided", false);
@@ -140,14 +140,14 @@ TextureId GltfMaterials::read_texture(const JsonCursor& index) {
   const auto [known, added] = texture_of_key_.try_emplace({image, texture.wrap_u, texture.wrap_v});
   if (added) {
     const JsonCursor image_json = document_.element("images", *source);
-    texture.name = json.string_or("name", image_json.string_or("name", ""));
+    texture.name = json.has("name") ? json.name() : image_json.name();
     known->second = scene_.textures.push_back(std::move(texture));
     pictures_[image].shown.push_back({known->second, Picture::Use::colour});
   }
   return known->second;
 }
 
-// Its place in pictures_.
+// Its place in pictures_. Images of the same bytes are one.
 std::size_t GltfMaterials::picture(const JsonCursor& image_index) {
   const JsonCursor json = document_.element("images", image_index);
   const auto [known, added] = picture_of_image_.try_emplace(image_index.count(), pictures_.size());
@@ -156,15 +156,16 @@ std::size_t GltfMaterials::picture(const JsonCursor& image_index) {
   picture.where = json.path();
   if (const auto view = json.find("bufferView")) {
     picture.bytes = document_.buffer_view(*view);
+  } else if (const auto bytes = document_.resolve_uri(json.at("uri").string(), json.path())) {
+    picture.bytes = *bytes;
   } else {
-    Result<Bytes> bytes = document_.resolve_uri(json.at("uri").string(), json.path());
-    if (bytes)
-      picture.owned = std::move(*bytes);
-    else
-      picture.missing = bytes.error().line();
-    picture.bytes = picture.owned;
+    picture.missing = bytes.error().line();
   }
-  pictures_.push_back(std::move(picture));
+  if (picture.missing.empty())
+    known->second =
+        picture_of_bytes_.try_emplace({picture.bytes.data(), picture.bytes.size()}, known->second)
+            .first->second;
+  if (known->second == pictures_.size()) pictures_.push_back(std::move(picture));
   return known->second;
 }
 

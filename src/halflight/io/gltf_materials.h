@@ -41,6 +41,7 @@ class GltfMaterials {
   MaterialId default_;
   std::vector<Picture> pictures_;
   std::map<std::size_t, std::size_t> picture_of_image_;
+  std::map<std::pair<const std::uint8_t*, std::size_t>, std::size_t> picture_of_bytes_;
   std::map<std::tuple<std::size_t, Wrap, Wrap>, TextureId> texture_of_key_;  // image and wraps
 };
 

@@ -45,7 +45,7 @@ MeshId GltfMeshes::read(const JsonCursor& index) {
   const auto [known, added] = mesh_of_index_.try_emplace(index.count());
   if (!added) return known->second;
   Mesh mesh;
-  mesh.name = json.string_or("name", "");
+  mesh.name = json.name();
   const JsonCursor primitives = json.at("primitives");
   for (std::size_t i = 0; i < primitives.size(); ++i) claim(primitives[i]);
   for (std::size_t i = 0; i < primitives.size(); ++i) read_primitive(primitives[i], mesh);

@@ -147,7 +147,7 @@ void read_gltf_nodes(GltfDocument& document, GltfMeshes& meshes, Scene& scene,
   for (const std::size_t i : below(root, scene_roots(root, parents, warnings))) {
     const JsonCursor json = root.at("nodes")[i];
     Node node;
-    node.name = json.string_or("name", "");
+    node.name = json.name();
     if (parents[i] != kNoParent) node.parent = id_of_node[parents[i]];
     node.local = local_transform(json);
     if (const auto mesh = json.find("mesh")) node.mesh = meshes.read(*mesh);

@@ -11,8 +11,10 @@
 namespace halflight {
 namespace {
 
-// Progressive files may hold any number of scans, each a full pass over the picture.
+// Progressive files may hold any number of scans, each a full pass over the picture; encoders write
+// ten or so.
 constexpr int kMaxScans = 200;
+constexpr std::size_t kMaxScannedTexels = std::size_t{1} << 31;
 
 struct Decoder {
   jpeg_decompress_struct jpeg{};
@@ -20,6 +22,16 @@ struct Decoder {
   jpeg_progress_mgr progress{};
   std::jmp_buf on_error{};
   char message[JMSG_LENGTH_MAX] = "";
+
+  Decoder();
+  Decoder(const Decoder&) = delete;
+  Decoder& operator=(const Decoder&) = delete;
+  ~Decoder() { jpeg_destroy_decompress(&jpeg); }
+
+  tl::unexpected<Error> failure(const std::string& where) const {
+    return input_error(std::string("the JPEG picture cannot be decoded: ") + message, where,
+                       "save it again");
+  }
 };
 
 void leave(j_common_ptr jpeg) {
@@ -30,9 +42,18 @@ void leave(j_common_ptr jpeg) {
 
 void limit_scans(j_common_ptr jpeg) {
   auto* decoder = static_cast<Decoder*>(jpeg->client_data);
-  if (decoder->jpeg.input_scan_number <= kMaxScans) return;
+  const auto scans = static_cast<std::size_t>(decoder->jpeg.input_scan_number);
+  const std::size_t texels = std::size_t{decoder->jpeg.image_width} * decoder->jpeg.image_height;
+  if (scans <= kMaxScans && scans * texels <= kMaxScannedTexels) return;
   std::strncpy(decoder->message, "too many scans", sizeof decoder->message - 1);
   std::longjmp(decoder->on_error, 1);
+}
+
+Decoder::Decoder() {
+  jpeg.err = jpeg_std_error(&errors);
+  jpeg.client_data = this;
+  errors.error_exit = leave;
+  errors.output_message = [](j_common_ptr) {};
 }
 
 bool open(Decoder& d, std::span<const std::uint8_t> bytes) {
@@ -58,32 +79,28 @@ bool decode(Decoder& d, std::uint8_t* rgba) {
   return true;
 }
 
+// Reads the header.
+Result<ImageSize> begin(Decoder& d, std::span<const std::uint8_t> bytes, const std::string& where) {
+  if (!open(d, bytes)) return d.failure(where);
+  const ImageSize size{d.jpeg.image_width, d.jpeg.image_height};
+  return check_image_size(size, where).map([&] { return size; });
+}
+
 }  // namespace
+
+Result<ImageSize> jpeg_size(std::span<const std::uint8_t> bytes, const std::string& where) {
+  Decoder d;
+  return begin(d, bytes, where);
+}
 
 Result<Image8> decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& where) {
   Decoder d;
-  d.jpeg.err = jpeg_std_error(&d.errors);
-  d.jpeg.client_data = &d;
-  d.errors.error_exit = leave;
-  d.errors.output_message = [](j_common_ptr) {};
-  Image8 image;
-  const auto finish = [&](Result<Image8> result) {
-    jpeg_destroy_decompress(&d.jpeg);
-    return result;
-  };
-  const auto failure = [&] {
-    return finish(input_error(std::string("the JPEG picture cannot be decoded: ") + d.message,
-                              where, "save it again"));
-  };
-  if (!open(d, bytes)) return failure();
-  const std::size_t width = d.jpeg.image_width, height = d.jpeg.image_height;
-  if (auto fits = check_image_size(width, height, where); !fits)
-    return finish(tl::unexpected(fits.error()));
-  image.width = static_cast<int>(width);
-  image.height = static_cast<int>(height);
-  image.texels.resize(width * height);
-  if (!decode(d, image.texels.front().data())) return failure();
-  return finish(std::move(image));
+  const Result<ImageSize> size = begin(d, bytes, where);
+  if (!size) return tl::unexpected(size.error());
+  Image8 image{static_cast<int>(size->width), static_cast<int>(size->height), {}};
+  image.texels.resize(size->texels());
+  if (!decode(d, image.texels.front().data())) return d.failure(where);
+  return image;
 }
 
 }  // namespace halflight

@@ -14,7 +14,6 @@
 #include <ImfStdIO.h>
 #include <png.h>
 
-#include "halflight/base/one_line.h"
 #include "halflight/io/image_reader.h"
 #include "halflight/io/scene_limits.h"
 
@@ -134,7 +133,7 @@ Result<Image> decode_exr(const Bytes& bytes, const std::string& where) {
       for (Rgb& c : image.pixels) c = Rgb(c.r);
     return image;
   } catch (const std::exception& e) {
-    return input_error("the EXR picture cannot be decoded: " + one_line(e.what()), where,
+    return input_error(std::string("the EXR picture cannot be decoded: ") + e.what(), where,
                        "save it again");
   }
 }

@@ -42,12 +42,25 @@ Result<Image8> decode_image(std::span<const std::uint8_t> bytes, const std::stri
   return decode_tga_or_bmp(bytes, where);
 }
 
+Result<ImageSize> image_size(std::span<const std::uint8_t> bytes, const std::string& where) {
+  switch (image_format(bytes)) {
+    case ImageFormat::png:
+      return png_size(bytes, where);
+    case ImageFormat::jpeg:
+      return jpeg_size(bytes, where);
+    case ImageFormat::other:
+      break;
+  }
+  return tga_or_bmp_size(bytes, where);
+}
+
 Result<Image8> read_image(const std::filesystem::path& path) {
   return read_file(path).and_then(
       [&](const Bytes& bytes) { return decode_image(bytes, path.string()); });
 }
 
-Result<void> check_image_size(std::size_t width, std::size_t height, const std::string& where) {
+Result<void> check_image_size(const ImageSize& size, const std::string& where) {
+  const auto [width, height] = size;
   if (width == 0 || height == 0) return input_error("the picture is empty", where, "save it again");
   if (width > kMaxTexels || height > kMaxTexels / width)
     return input_error("the picture has " + std::to_string(width) + " x " + std::to_string(height) +

@@ -19,6 +19,11 @@ struct Image8 {
   std::vector<std::array<std::uint8_t, 4>> texels;  // row 0 on top; sRGB colour, linear alpha
 };
 
+struct ImageSize {
+  std::size_t width = 0, height = 0;
+  std::size_t texels() const { return width * height; }
+};
+
 enum class ImageFormat { png, jpeg, other };
 
 // By the first bytes, whatever the file is called.
@@ -26,11 +31,16 @@ ImageFormat image_format(std::span<const std::uint8_t> bytes);
 // "image/png", "image/jpeg"; empty for other formats.
 std::string mime_type(ImageFormat format);
 
-// `where` names the picture in messages.
+// As the header says, and small enough to be held; of what is no picture, an error. `where` names
+// the picture in messages.
+Result<ImageSize> image_size(std::span<const std::uint8_t> bytes, const std::string& where);
 Result<Image8> decode_image(std::span<const std::uint8_t> bytes, const std::string& where);
 Result<Image8> read_image(const std::filesystem::path& path);
 
-// One decoder each; decode_image chooses.
+// One decoder each; image_size and decode_image choose.
+Result<ImageSize> png_size(std::span<const std::uint8_t> bytes, const std::string& where);
+Result<ImageSize> jpeg_size(std::span<const std::uint8_t> bytes, const std::string& where);
+Result<ImageSize> tga_or_bmp_size(std::span<const std::uint8_t> bytes, const std::string& where);
 Result<Image8> decode_png(std::span<const std::uint8_t> bytes, const std::string& where);
 Result<Image8> decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& where);
 Result<Image8> decode_tga_or_bmp(std::span<const std::uint8_t> bytes, const std::string& where);
@@ -39,7 +49,7 @@ Result<Image8> decode_tga_or_bmp(std::span<const std::uint8_t> bytes, const std:
 // up to 2 GB, before it looks for its bytes.
 Result<void> check_png_chunks(std::span<const std::uint8_t> bytes, const std::string& where);
 
-// Nothing when width x height can be held.
-Result<void> check_image_size(std::size_t width, std::size_t height, const std::string& where);
+// Nothing when so many texels can be held.
+Result<void> check_image_size(const ImageSize& size, const std::string& where);
 
 }  // namespace halflight

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "halflight/io/scene_limits.h"
+
 namespace halflight {
 
 std::optional<JsonCursor> JsonCursor::find(std::string_view key) const {
@@ -84,6 +86,14 @@ std::size_t JsonCursor::count_or(std::string_view key, std::size_t fallback) con
 std::string JsonCursor::string_or(std::string_view key, std::string_view fallback) const {
   const auto member = find(key);
   return member ? member->string() : std::string(fallback);
+}
+
+std::string JsonCursor::name() const {
+  std::string name = string_or("name", "");
+  if (name.size() > kMaxNameBytes)
+    at("name").fail("this has more than " + std::to_string(kMaxNameBytes) + " bytes",
+                    "shorten the name");
+  return name;
 }
 
 bool JsonCursor::boolean_or(std::string_view key, bool fallback) const {

@@ -9,9 +9,6 @@
 namespace halflight {
 namespace {
 
-// Pictures decoded before their sizes are added up: bounds the memory a hostile scene can take.
-constexpr std::size_t kBatch = 8;
-
 std::vector<std::array<std::uint8_t, 4>> as_opacity(const Image8& image) {
   const bool has_alpha = std::any_of(image.texels.begin(), image.texels.end(),
                                      [](const auto& texel) { return texel[3] != 255; });
@@ -38,26 +35,33 @@ void show(const Picture& picture, Image8& image, Scene& scene) {
   }
 }
 
+// Images may lie over each other, and a picture of a few bytes may claim any size: what decoding
+// all of them takes is known before it begins.
+void check_sizes(std::span<const Picture> pictures) {
+  ReadBudget bytes("bytes of pictures", kMaxPictureBytes), texels("texels", kMaxSceneTexels);
+  for (const Picture& picture : pictures) {
+    bytes.take(picture.bytes.size() * picture.shown.size(), picture.where);
+    const auto size = image_size(picture.bytes, picture.where);
+    if (size) texels.take(size->texels() * picture.shown.size(), picture.where);
+  }
+}
+
 }  // namespace
 
 void decode_pictures(std::span<Picture> pictures, Scene& scene, ReadWarnings& warnings) {
-  ReadBudget texels("texels", kMaxSceneTexels);
-  for (std::size_t first = 0; first < pictures.size(); first += kBatch) {
-    const auto batch = pictures.subspan(first, std::min(kBatch, pictures.size() - first));
-    std::vector<Result<Image8>> images(batch.size());
-    parallel_for(batch.size(), 1, [&](std::size_t i) {
-      if (batch[i].missing.empty()) images[i] = decode_image(batch[i].bytes, batch[i].where);
-    });
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      const bool missing = !batch[i].missing.empty();
-      if (missing || !images[i]) {
-        warnings.add((missing ? batch[i].missing : images[i].error().line()) +
-                     "; materials with this texture use their plain colour");
-        continue;
-      }
-      texels.take(images[i]->texels.size() * batch[i].shown.size(), batch[i].where);
-      show(batch[i], *images[i], scene);
+  check_sizes(pictures);
+  std::vector<Result<Image8>> images(pictures.size());
+  parallel_for(pictures.size(), 1, [&](std::size_t i) {
+    if (pictures[i].missing.empty()) images[i] = decode_image(pictures[i].bytes, pictures[i].where);
+  });
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const bool missing = !pictures[i].missing.empty();
+    if (!missing && images[i]) {
+      show(pictures[i], *images[i], scene);
+      continue;
     }
+    warnings.add((missing ? pictures[i].missing : images[i].error().line()) +
+                 "; materials with this texture use their plain colour");
   }
 }
 

@@ -26,6 +26,10 @@ inline constexpr std::size_t kMaxDecodedBytes = std::size_t{1} << (32 - kFewer);
 // Of accessors without data.
 inline constexpr std::size_t kMaxZeroElements = std::size_t{1} << (24 - kFewer);
 inline constexpr std::size_t kMaxSceneTexels = std::size_t{1} << (30 - kFewer);
+// Of one name: many things can have the same one, and each writes it out.
+inline constexpr std::size_t kMaxNameBytes = 4096;
+// Of pictures as they are stored, which the lit scene holds again.
+inline constexpr std::size_t kMaxPictureBytes = std::size_t{1} << (31 - kFewer);
 // A picture above this size is refused before memory is taken (16384 x 8192: 0.5 GB): a flat PNG
 // of a few kilobytes can claim any size.
 inline constexpr std::size_t kMaxTexels = std::size_t{1} << (27 - kFewer);
