@@ -155,6 +155,26 @@ TEST_F(LitGlb, EveryVertexLandsWhereItsLightWasRead) {
   }
 }
 
+// The nodes multiply up to what no file can hold; what lies beside them stays.
+TEST_F(LitGlb, NodesBeyondAllNumbersAreStillNumbers) {
+  Scene s = awkward_scene();
+  NodeId parent;
+  for (int i = 0; i < 20; ++i) {
+    Mat4 vast = glm::scale(Mat4(1.0), glm::dvec3(1e38));
+    vast[3].x = 1e38;
+    parent = add_node(s, "vast", vast, MeshId(), parent);
+  }
+  write(s, 0.1f);
+  const test::GlbFile file(path);
+  EXPECT_EQ(walk(file.document).size(), lit.size());
+  for (const json& node : file.document["nodes"])
+    if (node.contains("matrix"))
+      for (const json& number : node["matrix"]) {
+        ASSERT_TRUE(number.is_number());
+        EXPECT_LT(std::abs(number.get<double>()), 1e30);
+      }
+}
+
 TEST_F(LitGlb, FrontFacesOfMirroredNodesPointAlongTheirNormals) {
   write(awkward_scene(), 0.1f);
   const test::GlbFile file(path);

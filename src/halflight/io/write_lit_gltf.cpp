@@ -35,6 +35,15 @@ Mat4 without_skew(const Mat4& m) {
   return rigid;
 }
 
+// Numbers that a file can hold and a reader add up. Nothing is lit beyond, but nodes may lie there.
+bool can_be_stored(const Mat4& m) {
+  constexpr double kFarthestNode = 1e30;
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (!(std::abs(m[column][row]) < kFarthestNode)) return false;
+  return true;
+}
+
 PlacedNodes place_nodes(const Scene& scene) {
   const auto global = global_transforms(scene);
   PlacedNodes placed;
@@ -49,6 +58,7 @@ PlacedNodes place_nodes(const Scene& scene) {
     else if (!parent_as_read)
       local = glm::inverse(parent) * (scene.to_world * global[NodeId(i)]);
     if (!decompose(local)) local = without_skew(local);
+    if (!can_be_stored(local) || !can_be_stored(parent * local)) local = Mat4(1.0);
     placed.local.push_back(local);
     placed.world.push_back(parent * local);
   }
