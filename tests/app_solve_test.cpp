@@ -116,6 +116,20 @@ TEST_F(SolveCommand, RulesGiveMaterialsTheirFeatureSize) {
   EXPECT_NE(text("err").find("glass"), std::string::npos);
 }
 
+TEST_F(SolveCommand, NamesThatAreNotUtf8LeaveTheReportWhole) {
+  folder_.write("kitchen.mtl",
+                "newmtl K\xfc"
+                "che\nKd 0.5 0.5 0.5\nmap_Kd none\xfc.png\n");
+  folder_.write("kitchen.obj",
+                "mtllib kitchen.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl K\xfc"
+                "chen\nf 1 2 3\n"
+                "usemtl K\xfc"
+                "che\nf 3 2 1\n");
+  ASSERT_EQ(run("solve kitchen.obj --sky 1,1,1 --report report.json -o lit.glb"), 0) << text("err");
+  const auto report = nlohmann::json::parse(text("report.json"));
+  EXPECT_FALSE(report["warnings"].empty());
+}
+
 TEST_F(SolveCommand, UnreachableErrorEndsWithABudgetStatus) {
   EXPECT_EQ(run("solve room.obj --feature-size 1 --error 0.01% --links 30k --progress none "
                 "--report r.json --points sensors.txt --points-out out.txt"),

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "halflight/base/one_line.h"
+#include "halflight/base/result.h"
 
 namespace halflight {
 namespace {
@@ -23,10 +24,11 @@ TEST(OneLine, IsCutBetweenCharacters) {
   EXPECT_EQ(one_line("\x80\x80\x80", 1), "...");
 }
 
-TEST(OneLine, TakesAllOfAnError) {
-  const Error error = one_line(Error{"no\nsuch", "a\rb", "mend\tit", Error::Kind::system});
+TEST(OneLine, EveryErrorIsOne) {
+  const Error error = system_error("no\nsuch", "a\rb", "mend\tit").value();
   EXPECT_EQ(error.line(), "a b: no such (mend it)");
   EXPECT_EQ(error.kind, Error::Kind::system);
+  EXPECT_LT(input_error(std::string(5000, 'x')).value().line().size(), 400u);
 }
 
 }  // namespace

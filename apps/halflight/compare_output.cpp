@@ -110,7 +110,7 @@ std::string json_of(const CompareInput& input, const Image& reference,
                              {"l1", result.parts[i].l1},
                              {"l2", result.parts[i].l2}});
   }
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string text_of(const CompareOptions& options, const Comparison& result) {

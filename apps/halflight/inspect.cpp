@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "halflight/base/one_line.h"
 #include "halflight/scene/lint.h"
 #include "halflight/scene/summary.h"
 #include "inspect_hierarchy.h"
@@ -118,14 +119,15 @@ json to_json(const Inspection& i) {
 }
 
 void print_emitters(const Inspection& i) {
-  constexpr std::size_t kShown = 8;
+  constexpr std::size_t kShown = 8, kName = 60;
   const auto& emitters = i.summary.emitters;
   fmt::print("emitters   {}, {:.4g} {:.4g} {:.4g} W (or lm) in all\n", emitters.size(),
              i.summary.emitted_power.r, i.summary.emitted_power.g, i.summary.emitted_power.b);
   for (std::size_t k = 0; k < std::min(kShown, emitters.size()); ++k) {
     const EmitterSummary& e = emitters[k];
-    fmt::print("  {:<24} {:>7} triangles {:>9.4g} m2 {:>9.4g} W{}\n", name_of(i.scene, e.material),
-               e.triangles, e.area, luminance(e.power),
+    fmt::print("  {:<24} {:>7} triangles {:>9.4g} m2 {:>9.4g} W{}\n",
+               one_line(name_of(i.scene, e.material), kName), e.triangles, e.area,
+               luminance(e.power),
                i.scene.materials[e.material].double_sided ? ", both sides" : "");
   }
   if (emitters.size() > kShown) fmt::print("  and {} more\n", emitters.size() - kShown);

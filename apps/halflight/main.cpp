@@ -7,6 +7,7 @@
 #include <string>
 
 #include "commands.h"
+#include "halflight/base/one_line.h"
 #include "halflight/base/parallel.h"
 
 namespace halflight::app {
@@ -17,7 +18,7 @@ int run(int argc, char** argv) {
   cli.set_version_flag("--version", HALFLIGHT_VERSION);
   cli.require_subcommand(1);
   cli.failure_message([](const CLI::App*, const CLI::Error& e) {
-    return std::string("halflight: ") + e.what() + " (--help lists what there is)\n";
+    return "halflight: " + one_line(e.what()) + " (--help lists what there is)\n";
   });
   int status = kGoalMet;
   add_solve(cli, status);
@@ -42,9 +43,11 @@ int run(int argc, char** argv) {
 // What is thrown when the machine has no more to give. Makes no strings: there may be no memory.
 int fail(const std::exception& e) {
   const bool memory = dynamic_cast<const std::bad_alloc*>(&e) != nullptr;
+  const bool machine = dynamic_cast<const std::runtime_error*>(&e) != nullptr;
   std::fprintf(stderr, "halflight: %s (%s)\n", memory ? "there is not enough memory" : e.what(),
-               memory ? "light more coarsely, with a larger --feature-size, or lift the limit"
-                      : "lift the limits on memory and threads, or give --threads 1");
+               memory    ? "light more coarsely, with a larger --feature-size, or lift the limit"
+               : machine ? "lift the limits on memory and threads, or give --threads 1"
+                         : "please report it");
   return kSystemFailure;
 }
 
@@ -61,7 +64,8 @@ int fail(const std::exception& e) {
 }
 
 int flush_output(int status) {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written || status == kSystemFailure) return status;  // which has been told
   std::fputs("halflight: the standard output cannot be written to (check that there is room)\n",
              stderr);
   return kSystemFailure;

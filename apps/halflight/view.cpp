@@ -63,8 +63,9 @@ Result<void> serve(const LiveViewArguments& arguments) {
   const auto server =
       LoopbackServer::start(arguments.port, token, view_routes(session, view_page()));
   if (!server) return tl::unexpected(server.error());
-  std::printf("%s\n", (*server)->url().c_str());
-  std::fflush(stdout);
+  if (std::printf("%s\n", (*server)->url().c_str()) < 0 || std::fflush(stdout) != 0)
+    return system_error("the page's address cannot be written to the standard output", "",
+                        "check that there is room");
 
   Progress progress;
   const Interruptible interruptible(progress);

@@ -6,8 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "halflight/base/result.h"
-
 namespace halflight {
 
 // Control characters become spaces: neither new lines nor a terminal's commands get through. What
@@ -25,14 +23,6 @@ inline std::string one_line(std::string_view text, std::size_t most = 300) {
   std::replace_if(line.begin(), line.end(), is_control, ' ');
   if (cut) line += kCut;
   return line;
-}
-
-inline Error one_line(Error error) {
-  constexpr std::size_t kLongestPlace = 1000;
-  error.what = one_line(error.what);
-  error.where = one_line(error.where, kLongestPlace);
-  error.remedy = one_line(error.remedy);
-  return error;
 }
 
 }  // namespace halflight

@@ -1,10 +1,13 @@
 // Errors at the border are values: one clear line that says what, where and what to do.
 #pragma once
 
+#include <cstddef>
 #include <string>
-#include <utility>
+#include <string_view>
 
 #include <tl/expected.hpp>
+
+#include "halflight/base/one_line.h"
 
 namespace halflight {
 
@@ -26,15 +29,19 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-inline tl::unexpected<Error> input_error(std::string what, std::string where = {},
-                                         std::string remedy = {}) {
-  return tl::unexpected<Error>(
-      Error{std::move(what), std::move(where), std::move(remedy), Error::Kind::input});
+// Names that strangers chose stand in messages: all three parts become one line each.
+inline Error make_error(Error::Kind kind, std::string_view what, std::string_view where,
+                        std::string_view remedy) {
+  constexpr std::size_t kLongestPlace = 1000;
+  return {one_line(what), one_line(where, kLongestPlace), one_line(remedy), kind};
 }
-inline tl::unexpected<Error> system_error(std::string what, std::string where = {},
-                                          std::string remedy = {}) {
-  return tl::unexpected<Error>(
-      Error{std::move(what), std::move(where), std::move(remedy), Error::Kind::system});
+inline tl::unexpected<Error> input_error(std::string_view what, std::string_view where = {},
+                                         std::string_view remedy = {}) {
+  return tl::unexpected<Error>(make_error(Error::Kind::input, what, where, remedy));
+}
+inline tl::unexpected<Error> system_error(std::string_view what, std::string_view where = {},
+                                          std::string_view remedy = {}) {
+  return tl::unexpected<Error>(make_error(Error::Kind::system, what, where, remedy));
 }
 
 }  // namespace halflight

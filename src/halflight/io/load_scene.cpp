@@ -58,7 +58,7 @@ Result<Scene> read_scene(const FileOf& file_of, const std::filesystem::path& pat
     order_in_space(scene);
     return scene;
   } catch (const ReadFailure& failure) {
-    return tl::unexpected(one_line(failure.error));
+    return tl::unexpected(failure.error);
   } catch (const std::bad_alloc&) {
     return system_error("there is not enough memory to read the scene", path.string(),
                         "use a smaller scene or a larger machine");

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "halflight/base/one_line.h"
+#include "halflight/base/result.h"
 
 namespace halflight {
 
@@ -14,8 +15,9 @@ struct ReadFailure {
   Error error;
 };
 
-[[noreturn]] inline void fail_reading(std::string what, std::string where, std::string remedy) {
-  throw ReadFailure{{std::move(what), std::move(where), std::move(remedy), Error::Kind::input}};
+[[noreturn]] inline void fail_reading(std::string_view what, std::string_view where,
+                                      std::string_view remedy) {
+  throw ReadFailure{make_error(Error::Kind::input, what, where, remedy)};
 }
 
 template <class T>

@@ -141,7 +141,8 @@ std::string Report::json(const SolverState& state) const {
                           {"filled", lightmap_->filled},
                           {"seam_difference_as_read", lightmap_->seams_as_read},
                           {"seam_difference", lightmap_->seams}};
-  return report.dump(2) + "\n";
+  // Names that are not UTF-8 are shown with the sign for what is not known.
+  return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace halflight
