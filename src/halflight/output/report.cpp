@@ -27,13 +27,18 @@ json input(const SolverState& state) {
 }
 
 json settings(const SolverState& state) {
-  return {{"feature_size", state.options.feature_size},
-          {"error", state.options.error},
-          {"links", state.options.links == LinkMaker::refined ? "refined" : "sampled"},
+  const SolveOptions& o = state.options;
+  return {{"feature_size", o.feature_size},
+          {"feature_size_rules", o.feature_size_rules.size()},
+          {"feature_size_in_pixels", o.pixels ? json(o.pixels->pixels) : json()},
+          {"importance_of_a_view", o.importance.has_value()},
+          {"most_links", o.most_links},
+          {"error", o.error},
+          {"links", o.links == LinkMaker::refined ? "refined" : "sampled"},
           {"visibility", name_of(state.visibility->mode())},
-          {"hierarchy", name_of(state.options.hierarchy)},
-          {"intra_cluster", state.options.intra_cluster},
-          {"levels", state.options.levels},
+          {"hierarchy", name_of(o.hierarchy)},
+          {"intra_cluster", o.intra_cluster},
+          {"levels", o.levels},
           {"sky", rgb(state.world->scene.sky)},
           {"threads", thread_count()},
           {"instruction_set", RayScene::instruction_set()}};
