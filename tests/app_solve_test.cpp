@@ -1,6 +1,7 @@
 // The solve command from outside: exit status, files, units, threads, interruption.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -18,6 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 class SolveCommand : public RoomCommand {};
+
+long lines_of(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
 TEST_F(SolveCommand, WritesTheSameBytesWhateverTheThreads) {
   for (const char* links : {"refined", "sampled"}) {
@@ -157,6 +160,22 @@ TEST_F(SolveCommand, RejectsBadUseInOneLine) {
     EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << arguments << "\n" << err;
     EXPECT_FALSE(fs::exists(path("lit.glb"))) << arguments;
   }
+}
+
+TEST_F(SolveCommand, OtherCommandsRejectNumbersThatTheyCannotHold) {
+  const std::string reference = "reference room.obj --points sensors.txt --points-out o.txt ";
+  const std::string render = "render room.obj --feature-size 1 --size 8x8 -o o.png ";
+  for (const std::string& arguments :
+       {reference + "--spp 2 --seed -1", reference + "--spp 2 --seed 99999999999999999999",
+        reference + "--spp 2 --seed nan", reference + "--spp -4294967294",
+        reference + "--spp 2 --threads 2147483647", reference + "--spp 2 --threads -1",
+        render + "--seed -1", render + "--seed 99999999999999999999", render + "--path-trace -1",
+        render + "--samples 99999999999999999999"}) {
+    EXPECT_EQ(run(arguments), 1) << arguments;
+    EXPECT_EQ(lines_of(text("err")), 1) << arguments << "\n" << text("err");
+    EXPECT_FALSE(fs::exists(path("o.txt")) || fs::exists(path("o.png"))) << arguments;
+  }
+  EXPECT_EQ(run(reference + "--spp 2 --seed 18446744073709551615"), 0) << text("err");
 }
 
 TEST_F(SolveCommand, UnwritablePlaceIsASystemFailure) {

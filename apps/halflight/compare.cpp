@@ -18,9 +18,12 @@
 #include "halflight/io/atomic_file.h"
 #include "halflight/io/image_read.h"
 #include "halflight/io/image_write.h"
+#include "number_checks.h"
 
 namespace halflight::app {
 namespace {
+
+constexpr std::size_t kMostListed = 1'000'000'000;  // features
 
 struct Arguments {
   CompareInput input;
@@ -146,19 +149,21 @@ void add_compare(CLI::App& cli, int& status) {
   command
       ->add_option("--feature-size", a->options.feature_sizes,
                    "Feature size s in pixels; may repeat for a curve")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(from_to(0.0, 1e6).description("0 to 1e6"))
       ->allow_extra_args(false);
   command->add_option("--visibility-mask", a->input.visibility_mask,
                       "Share of the light that each pixel of REF sees; white sees all of it. "
                       "Default: estimated from REF");
   command->add_option("--exponent", a->options.p, "Exponent p of the norm")
-      ->check(CLI::Range(1.0, 64.0));
+      ->check(from_to(1.0, 64.0).description("1 to 64"));
   command->add_flag("--four-neighbours", a->four_neighbours,
                     "Erode and expand with 4 neighbours instead of 8");
   command->add_option("--part", a->parts, "Values of X,Y,WIDTH,HEIGHT alone; may repeat")
       ->allow_extra_args(false);
-  command->add_option("--worst", a->options.worst_regions,
-                      "List so many features with the largest error");
+  command
+      ->add_option("--worst", a->options.worst_regions,
+                   "List so many features with the largest error")
+      ->check(from_to(std::size_t{0}, kMostListed));
   command->add_option("--mask", a->files.mask, "Write the feature mask; black is inside");
   command->add_option(
       "--difference", a->files.difference,

@@ -9,6 +9,7 @@
 #include "halflight/base/parallel.h"
 #include "halflight/solve/mix.h"
 #include "lit_output.h"
+#include "number_checks.h"
 #include "sensor_arguments.h"
 
 namespace halflight::app {
@@ -98,7 +99,7 @@ void add_mix(CLI::App& cli, int& status) {
   add_sensor_arguments(command, arguments->sensors);
   add_lit_arguments(command, arguments->lit);
   command.add_option("--threads", arguments->threads, "0: all cores")
-      ->check(CLI::Range(0, 4096).description(""))
+      ->check(from_to(0, kMostThreads))
       ->type_name("N")
       ->capture_default_str();
   command.callback([arguments, &status] {

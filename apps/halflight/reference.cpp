@@ -9,6 +9,7 @@
 #include "halflight/io/atomic_file.h"
 #include "halflight/io/sensors.h"
 #include "halflight/rays/reference_sensors.h"
+#include "number_checks.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
 #include "visibility_arguments.h"
@@ -111,14 +112,17 @@ void add_reference(CLI::App& cli, int& status) {
       ->type_name("FILE");
   command.add_option("--spp", arguments->samples, "paths per sensor")
       ->type_name("N")
-      ->check(CLI::Range(2u, 1u << 30))
+      ->check(from_to(2u, 1u << 30).description("2 to 2^30"))
       ->required();
   add_visibility_arguments(command, arguments->visibility, "exact");
   add_bounce_argument(command, arguments->visibility);
   command.add_option("--seed", arguments->seed, "picks another set of samples")
+      ->check(any_number<std::uint64_t>())
+      ->type_name("N")
       ->capture_default_str();
   command.add_option("--threads", arguments->threads, "0: all cores")
-      ->check(CLI::NonNegativeNumber)
+      ->check(from_to(0, kMostThreads))
+      ->type_name("N")
       ->capture_default_str();
   command.callback([arguments, &status] {
     set_thread_count(arguments->threads);

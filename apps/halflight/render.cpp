@@ -15,6 +15,7 @@
 #include "halflight/rays/path_traced_image.h"
 #include "halflight/solve/memory.h"
 #include "lit_output.h"
+#include "number_checks.h"
 #include "scene_arguments.h"
 #include "solve_arguments.h"
 #include "solve_run.h"
@@ -143,12 +144,13 @@ void add_render(CLI::App& cli, int& status) {
   command
       .add_option("--path-trace", arguments->path_trace, "trace this many paths per pixel instead")
       ->type_name("SPP")
-      ->check(CLI::Range(1u, 1u << 24));
+      ->check(from_to(1u, 1u << 24));
   add_bounce_argument(command, arguments->solve.visibility);
   command
       .add_option("--samples", arguments->samples_per_pixel,
                   "camera rays per pixel of solved light")
-      ->check(CLI::Range(1, 1024))
+      ->check(from_to(1, 1024).description("1 to 1024"))
+      ->type_name("N")
       ->capture_default_str();
   command
       .add_option("--visibility-mask", arguments->visibility_output,
@@ -156,9 +158,11 @@ void add_render(CLI::App& cli, int& status) {
       ->type_name("FILE");
   command.add_option("--mask-samples", arguments->visibility_samples, "light samples per pixel")
       ->type_name("N")
-      ->check(CLI::Range(1u, 1u << 24))
+      ->check(from_to(1u, 1u << 24))
       ->capture_default_str();
   command.add_option("--seed", arguments->seed, "picks another set of samples")
+      ->check(any_number<std::uint64_t>())
+      ->type_name("N")
       ->capture_default_str();
   command.callback([arguments, &command, &status] {
     set_thread_count(arguments->solve.threads);

@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "halflight/base/parallel.h"
 #include "lit_output.h"
+#include "number_checks.h"
 #include "sensor_arguments.h"
 
 namespace halflight::app {
@@ -38,7 +39,7 @@ void add_sample(CLI::App& cli, int& status) {
   add_sensor_arguments(command, arguments->sensors);
   add_lit_arguments(command, arguments->lit);
   command.add_option("--threads", arguments->threads, "0: all cores")
-      ->check(CLI::Range(0, 4096).description(""))
+      ->check(from_to(0, kMostThreads))
       ->type_name("N")
       ->capture_default_str();
   command.callback([arguments, &status] {

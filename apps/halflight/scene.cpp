@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "halflight/io/write_gltf.h"
 #include "halflight/scene/procedural/catalogue.h"
+#include "number_checks.h"
 
 namespace halflight::app {
 namespace {
@@ -24,7 +25,10 @@ int write(const Request& request) {
 }
 
 CLI::Validator range_of(const Knob& knob) {
-  CLI::Range range(knob.least, knob.most);
+  const auto whole = [](double bound) { return static_cast<int>(bound); };
+  const bool counts = std::holds_alternative<int*>(knob.value);
+  CLI::Validator range =
+      counts ? from_to(whole(knob.least), whole(knob.most)) : from_to(knob.least, knob.most);
   return range.description(fmt::format("{:g} to {:g}", knob.least, knob.most));
 }
 

@@ -14,6 +14,7 @@
 #include "halflight/rays/automatic_view.h"
 #include "halflight/rays/path_tracer.h"
 #include "halflight/solve/settings.h"
+#include "number_checks.h"
 #include "terminal_progress.h"
 
 namespace halflight::app {
@@ -72,7 +73,7 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
       ->type_name("auto|json|none")
       ->capture_default_str();
   command.add_option("--threads", arguments.threads, "0: all cores")
-      ->check(CLI::Range(0, 4096).description(""))
+      ->check(from_to(0, kMostThreads))
       ->type_name("N")
       ->capture_default_str();
 }
