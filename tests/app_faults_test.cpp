@@ -189,6 +189,22 @@ TEST_F(Faults, LightmapThatDoesNotFitLeavesThePicturesThatWereThere) {
   expect_nothing_unfinished();
 }
 
+TEST_F(Faults, NamesMayBeAsLongAsTheSystemAllows) {
+  for (const std::size_t length : {239, 245, 255}) {
+    const std::string name(length - 4, 'x');
+    EXPECT_EQ(run("scene cornell-box -o " + name + ".glb"), 0) << text("err");
+    EXPECT_GT(text(name + ".glb").size(), 1000u);
+  }
+  std::string umlauts;
+  while (umlauts.size() < 250) umlauts += "\u00e4";
+  EXPECT_EQ(run("scene cornell-box -o " + umlauts + ".glb"), 0) << text("err");
+  EXPECT_EQ(run(kSolve + "--checkpoint c -o " + std::string(252, 'x') + ".glb"), kSystemFailure);
+  EXPECT_THAT(text("err"), HasSubstr("File name too long"));
+  expect_one_line();
+  EXPECT_FALSE(fs::exists(path("c")));
+  expect_nothing_unfinished();
+}
+
 // A scene of two files, as exporters write them.
 class VanishingInput : public Faults {
  protected:
