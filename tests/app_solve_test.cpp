@@ -154,7 +154,10 @@ TEST_F(SolveCommand, RejectsBadUseInOneLine) {
                                 "solve room.obj --feature-size xpx@auto",
                                 "solve room.obj --importance nowhere",
                                 "solve room.obj --feature-sizes none.toml",
-                                "solve room.obj --feature-size inf"}) {
+                                "solve room.obj --feature-size inf",
+                                "solve room.obj --feature-size 1e39",
+                                "solve room.obj --feature-size 1e30",
+                                "solve room.obj --feature-size 1e-50"}) {
     EXPECT_EQ(run(std::string(arguments) + " --progress none -o lit.glb"), 1) << arguments;
     const std::string err = text("err");
     EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << arguments << "\n" << err;
@@ -176,6 +179,14 @@ TEST_F(SolveCommand, OtherCommandsRejectNumbersThatTheyCannotHold) {
     EXPECT_FALSE(fs::exists(path("o.txt")) || fs::exists(path("o.png"))) << arguments;
   }
   EXPECT_EQ(run(reference + "--spp 2 --seed 18446744073709551615"), 0) << text("err");
+}
+
+TEST_F(SolveCommand, LargestFeatureSizeGivesACheckpointThatCanBeRead) {
+  EXPECT_EQ(
+      run("solve room.obj --feature-size 1e15 --progress none --checkpoint c --report r.json"), 0)
+      << text("err");
+  EXPECT_TRUE(read_json(path("r.json"))["settings"]["feature_size"].is_number());
+  EXPECT_EQ(run("sample c --points sensors.txt"), 0) << text("err");
 }
 
 TEST_F(SolveCommand, UnwritablePlaceIsASystemFailure) {
