@@ -189,6 +189,18 @@ TEST_F(SolveCommand, LargestFeatureSizeGivesACheckpointThatCanBeRead) {
   EXPECT_EQ(run("sample c --points sensors.txt"), 0) << text("err");
 }
 
+TEST_F(SolveCommand, CamerasDoNotAskForPicturesThatFillTheMemory) {
+  folder_.write("huge.json", R"({"position": [1, 2, 4], "target": [3, 1, 0], "width": 32768,
+                                 "height": 32768})");
+  EXPECT_EQ(run("render room.obj --path-trace 1 --camera huge.json -o o.png"), 1);
+  EXPECT_EQ(lines_of(text("err")), 1) << text("err");
+  EXPECT_NE(text("err").find("--size 32768x32768"), std::string::npos) << text("err");
+  EXPECT_EQ(run("render room.obj --path-trace 1 --camera huge.json --size 8x8 --progress none "
+                "-o o.png"),
+            0)
+      << text("err");
+}
+
 TEST_F(SolveCommand, UnwritablePlaceIsASystemFailure) {
   EXPECT_EQ(run("solve room.obj --feature-size 1 --progress none -o no/such/folder/lit.glb"), 2);
 }

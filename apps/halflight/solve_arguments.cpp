@@ -21,8 +21,6 @@ namespace halflight::app {
 namespace {
 
 constexpr double kLongestTime = 1e8;  // seconds; three years
-constexpr int kUsualWidth = 1280;     // of a view that asks for no size, pixels
-constexpr float kUsualAspect = 16.f / 9.f;
 
 }  // namespace
 
@@ -128,11 +126,8 @@ Result<ViewOfInterest> view_of_interest(const std::string& wish, const World& wo
   const Result<View> view = choose_view(wish, world.scene, world.geometry,
                                         [&] { return automatic_view(PathTracer(world)); });
   if (!view) return tl::unexpected(view.error());
-  if (view->width > 0 && view->height > 0)
-    return ViewOfInterest{view->camera, view->width, view->height};
-  const float aspect = view->camera.aspect > 0.f ? view->camera.aspect : kUsualAspect;
-  return ViewOfInterest{view->camera, kUsualWidth,
-                        std::max(1, static_cast<int>(static_cast<float>(kUsualWidth) / aspect))};
+  const auto [width, height] = picture_size(*view);
+  return ViewOfInterest{view->camera, width, height};
 }
 
 }  // namespace
