@@ -157,7 +157,10 @@ TEST_F(SolveCommand, RejectsBadUseInOneLine) {
                                 "solve room.obj --feature-size inf",
                                 "solve room.obj --feature-size 1e39",
                                 "solve room.obj --feature-size 1e30",
-                                "solve room.obj --feature-size 1e-50"}) {
+                                "solve room.obj --feature-size 1e-50",
+                                "solve room.obj --report ''",
+                                "solve room.obj --checkpoint ''",
+                                "solve room.obj --points ''"}) {
     EXPECT_EQ(run(std::string(arguments) + " --progress none -o lit.glb"), 1) << arguments;
     const std::string err = text("err");
     EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << arguments << "\n" << err;
@@ -199,6 +202,11 @@ TEST_F(SolveCommand, CamerasDoNotAskForPicturesThatFillTheMemory) {
                 "-o o.png"),
             0)
       << text("err");
+}
+
+TEST_F(SolveCommand, RejectsAnOutputWithoutAName) {
+  EXPECT_EQ(run("solve room.obj --feature-size 1 --progress none -o ''"), 1);
+  EXPECT_EQ(lines_of(text("err")), 1) << text("err");
 }
 
 TEST_F(SolveCommand, UnwritablePlaceIsASystemFailure) {

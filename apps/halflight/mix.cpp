@@ -70,9 +70,14 @@ Result<std::vector<Rgb>> factors_of(const MixArguments& arguments,
 
 Result<void> mix_groups(const MixArguments& arguments) {
   if (auto ok = check(arguments.lit); !ok) return ok;
+  CommandFiles files;
+  add_files(files, arguments.sensors);
+  add_files(files, arguments.lit);
+  add_files(files, arguments.checkpoint);
+  if (auto ok = check(files); !ok) return ok;
   const auto sensors = read_sensors(arguments.sensors);
   if (!sensors) return tl::unexpected(sensors.error());
-  Result<SolverState> state = restore(arguments.checkpoint);
+  Result<SolverState> state = restore(arguments.checkpoint, files);
   if (!state) return tl::unexpected(state.error());
   if (state->grouped.groups.empty())
     return input_error("the checkpoint has no light groups", arguments.checkpoint.path.string(),

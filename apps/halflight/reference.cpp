@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "command_files.h"
 #include "commands.h"
 #include "halflight/base/parallel.h"
-#include "halflight/io/atomic_file.h"
 #include "halflight/io/sensors.h"
 #include "halflight/rays/reference_sensors.h"
 #include "number_checks.h"
@@ -62,9 +62,13 @@ void report_bias(const TimedEstimates& tried, const TimedEstimates& reference) {
 }
 
 Result<void> reference(const ReferenceArguments& arguments) {
+  CommandFiles files;
+  files.reads("the sensors", arguments.points);
+  files.reads_scene(arguments.scene.path);
+  files.writes("--points-out", arguments.points_out);
+  if (auto ok = check(files); !ok) return ok;
   const auto sensors = read_sensors(arguments.points);
   if (!sensors) return tl::unexpected(sensors.error());
-  if (auto ok = check_writable(arguments.points_out); !ok) return ok;
   Result<Scene> scene = load(arguments.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
@@ -109,6 +113,7 @@ void add_reference(CLI::App& cli, int& status) {
       .add_option("--points-out", arguments->points_out,
                   "where to write the sensors with Er Eg Eb and their standard error (RMS of the "
                   "channels); default: standard output")
+      ->check(file_name())
       ->type_name("FILE");
   command.add_option("--spp", arguments->samples, "paths per sensor")
       ->type_name("N")

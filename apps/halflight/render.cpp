@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "checkpoint_arguments.h"
+#include "command_files.h"
 #include "commands.h"
 #include "halflight/base/parallel.h"
-#include "halflight/io/atomic_file.h"
 #include "halflight/io/image_write.h"
 #include "halflight/output/lit_mesh.h"
 #include "halflight/output/solution_image.h"
@@ -39,8 +39,19 @@ struct RenderArguments {
 Result<void> check(const RenderArguments& arguments) {
   if (auto ok = check(arguments.view); !ok) return ok;
   if (arguments.visibility_output.empty()) return {};
-  if (auto known = check_image_name(arguments.visibility_output); !known) return known;
-  return check_writable(arguments.visibility_output);
+  return check_image_name(arguments.visibility_output);
+}
+
+CommandFiles files_of(const RenderArguments& arguments, bool checkpoint) {
+  CommandFiles files;
+  add_files(files, arguments.view);
+  files.writes("--visibility-mask", arguments.visibility_output);
+  add_files(files, arguments.solve);
+  if (checkpoint)
+    files.reads("the checkpoint", arguments.scene.path);
+  else
+    files.reads_scene(arguments.scene.path);
+  return files;
 }
 
 // The scene of a checkpoint and the light in it are what they are.
@@ -104,10 +115,15 @@ Result<Image> path_traced(const RenderArguments& arguments, const World& world, 
 Result<void> render(const RenderArguments& arguments) {
   if (auto ok = check(arguments); !ok) return ok;
   std::optional<Checkpoint> checkpoint;
+  CommandFiles files = files_of(arguments, is_checkpoint(arguments.scene.path));
+  if (auto ok = check(files); !ok) return ok;
   if (is_checkpoint(arguments.scene.path)) {
     auto opened = Checkpoint::open(arguments.scene.path);
     if (!opened) return tl::unexpected(opened.error());
     checkpoint = std::move(*opened);
+    if (auto ok = check_with_scene(std::move(files), *checkpoint, arguments.scene_of_checkpoint);
+        !ok)
+      return ok;
   }
   Result<Scene> scene =
       checkpoint ? checkpoint->load_scene(arguments.scene_of_checkpoint) : load(arguments.scene);
@@ -153,9 +169,11 @@ void add_render(CLI::App& cli, int& status) {
       ->type_name("N")
       ->capture_default_str();
   command
-      .add_option("--visibility-mask", arguments->visibility_output,
-                  "also write the visible share of the direct light of each pixel: .exr or .png")
-      ->type_name("FILE");
+          .add_option(
+              "--visibility-mask", arguments->visibility_output,
+              "also write the visible share of the direct light of each pixel: .exr or .png")
+          ->check(file_name())
+          ->type_name("FILE");
   command.add_option("--mask-samples", arguments->visibility_samples, "light samples per pixel")
       ->type_name("N")
       ->check(from_to(1u, 1u << 24))

@@ -20,12 +20,17 @@ struct SampleArguments {
 
 Result<void> sample(const SampleArguments& arguments) {
   if (auto ok = check(arguments.lit); !ok) return ok;
+  CommandFiles files;
+  add_files(files, arguments.sensors);
+  add_files(files, arguments.lit);
+  add_files(files, arguments.checkpoint);
   if (arguments.sensors.points.empty() && arguments.lit.path.empty())
     return input_error("there is nothing to write", arguments.checkpoint.path.string(),
                        "give --points FILE or -o lit.glb");
+  if (auto ok = check(files); !ok) return ok;
   const auto sensors = read_sensors(arguments.sensors);
   if (!sensors) return tl::unexpected(sensors.error());
-  const Result<SolverState> state = restore(arguments.checkpoint);
+  const Result<SolverState> state = restore(arguments.checkpoint, files);
   if (!state) return tl::unexpected(state.error());
   return write_readings(arguments.sensors, *sensors, arguments.lit, *state);
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "command_files.h"
 #include "commands.h"
 #include "halflight/base/parallel.h"
 #include "halflight/io/atomic_file.h"
@@ -49,6 +50,18 @@ void warn_without_output(const Outputs& outputs) {
   if (outputs.lit.path.empty() && outputs.sensors.points.empty() && outputs.report.empty() &&
       outputs.checkpoint.empty())
     warn("nothing will be written (add -o lit.glb, --points, --report or --checkpoint)");
+}
+
+// A checkpoint that is gone on from is written to again.
+Result<void> check_files(const SolveCommand& command) {
+  CommandFiles files;
+  add_files(files, command.outputs.lit);
+  add_files(files, command.outputs.sensors);
+  files.writes("--report", command.outputs.report);
+  files.writes("--checkpoint", command.outputs.checkpoint);
+  add_files(files, command.solve);
+  files.reads_scene(command.scene.path);
+  return check(files);
 }
 
 // A resumed solve takes its groups from the checkpoint; others may not be asked for.
@@ -145,11 +158,11 @@ Result<int> run(const SolveCommand& command) {
   Result<SolvePlan> plan = resolve(command.solve);
   if (!plan) return tl::unexpected(plan.error());
   if (auto ok = check(command.outputs.lit); !ok) return tl::unexpected(ok.error());
-  const auto sensors = read_sensors(command.outputs.sensors);
-  if (!sensors) return tl::unexpected(sensors.error());
-  if (auto ok = check_writable(command.outputs.report); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_file_size(command.scene.path, plan->options.memory); !ok)
     return tl::unexpected(ok.error());
+  if (auto ok = check_files(command); !ok) return tl::unexpected(ok.error());
+  const auto sensors = read_sensors(command.outputs.sensors);
+  if (!sensors) return tl::unexpected(sensors.error());
   Result<Scene> scene = load(command.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
@@ -227,10 +240,13 @@ void add_solve(CLI::App& cli, int& status) {
   add_solve_arguments(sub, command->solve);
   add_lit_arguments(sub, command->outputs.lit);
   add_sensor_arguments(sub, command->outputs.sensors);
-  sub.add_option("--report", command->outputs.report, "what was done, JSON")->type_name("FILE");
+  sub.add_option("--report", command->outputs.report, "what was done, JSON")
+      ->check(file_name())
+      ->type_name("FILE");
   CLI::Option* checkpoint =
       sub.add_option("--checkpoint", command->outputs.checkpoint,
                      "keep the solution here, to go on with --resume, for sample and for render")
+          ->check(file_name())
           ->type_name("FILE");
   sub.add_option("--light-groups", command->outputs.groups,
                  "take the light apart by who sends it, for mix: each material, light and the sky "

@@ -52,6 +52,7 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
   command
       .add_option("--feature-sizes", arguments.feature_sizes,
                   "feature sizes by material or node, see docs/command-line.md")
+      ->check(file_name())
       ->type_name("RULES.toml");
   std::map<std::string, HierarchyKind> hierarchies;
   for (const NamedHierarchy& h : kHierarchies) hierarchies.emplace(h.name, h.kind);
@@ -74,6 +75,13 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
       ->check(from_to(0, kMostThreads))
       ->type_name("N")
       ->capture_default_str();
+}
+
+void add_files(CommandFiles& files, const SolveArguments& arguments) {
+  files.reads("the rules", arguments.feature_sizes);
+  files.reads_view("the view", arguments.importance);
+  if (const auto pixels = pixel_size_wish(arguments.visibility.feature_size); pixels && *pixels)
+    files.reads_view("the view", (*pixels)->camera);
 }
 
 Result<SolvePlan> resolve(const SolveArguments& arguments) {

@@ -11,7 +11,6 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include "halflight/io/atomic_file.h"
 #include "halflight/io/image_write.h"
 #include "halflight/output/choose_view.h"
 
@@ -87,6 +86,7 @@ void add_view_arguments(CLI::App& command, ViewArguments& arguments) {
       ->default_str("agx");
   command
       .add_option("-o,--output", arguments.output, "picture to write: .png, or .exr for radiance")
+      ->check(file_name())
       ->type_name("FILE")
       ->required();
 }
@@ -95,8 +95,12 @@ Result<void> check(const ViewArguments& arguments) {
   if (!arguments.size.empty())
     if (const auto size = to_size(arguments.size); !size) return tl::unexpected(size.error());
   if (const auto ev = to_ev(arguments.exposure, Image()); !ev) return tl::unexpected(ev.error());
-  if (auto known = check_image_name(arguments.output); !known) return known;
-  return check_writable(arguments.output);
+  return check_image_name(arguments.output);
+}
+
+void add_files(CommandFiles& files, const ViewArguments& arguments) {
+  files.reads_view("the camera", arguments.camera);
+  files.writes("-o", arguments.output);
 }
 
 Result<View> choose_view(const ViewArguments& arguments, const Scene& scene,
