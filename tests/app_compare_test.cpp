@@ -141,6 +141,7 @@ TEST_F(CompareCommand, BadInputEndsWithStatus1AndOneLineThatNamesTheFile) {
       {"compare a.png a.png --exponent nan", "exponent"},
       {"compare a.png a.png --feature-size 4 --worst -1", "worst"},
       {"compare a.png a.png --feature-size 4 --worst 99999999999999999999", "worst"},
+      {"compare a.png a.png --worst 3", "feature-size"},
       {"compare a.png a.png --difference ''", "difference"},
       {"reproduce figure99 -o out", "figure99"},
   };

@@ -154,7 +154,7 @@ void add_compare(CLI::App& cli, int& status) {
   const auto a = std::make_shared<Arguments>();
   command->add_option("REF", a->input.reference, "Reference picture, PNG or EXR")->required();
   command->add_option("TEST", a->input.test, "Picture to judge, of the same size")->required();
-  command
+  CLI::Option* feature_size = command
                                   ->add_option("--feature-size", a->options.feature_sizes,
                                                "Feature size s in pixels; may repeat for a curve")
                                   ->check(from_to(0.0, 1e6).description("0 to 1e6"))
@@ -173,7 +173,8 @@ void add_compare(CLI::App& cli, int& status) {
   command
       ->add_option("--worst", a->options.worst_regions,
                    "List so many features with the largest error")
-      ->check(from_to(std::size_t{0}, kMostListed));
+      ->check(from_to(std::size_t{0}, kMostListed))
+      ->needs(feature_size);
   command->add_option("--mask", a->files.mask, "Write the feature mask; black is inside")
       ->check(file_name());
   command

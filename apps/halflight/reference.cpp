@@ -61,12 +61,14 @@ void report_bias(const TimedEstimates& tried, const TimedEstimates& reference) {
              stderr);
 }
 
-Result<void> reference(const ReferenceArguments& arguments) {
+Result<void> reference(const CLI::App& command, const ReferenceArguments& arguments) {
+  if (auto ok = check_for_paths(arguments.visibility); !ok) return ok;
   CommandFiles files;
   files.reads("the sensors", arguments.points);
   files.reads_scene(arguments.scene.path);
   files.writes("--points-out", arguments.points_out);
   if (auto ok = check(files); !ok) return ok;
+  warn_of_idle_visibility(command, arguments.visibility);
   const auto sensors = read_sensors(arguments.points);
   if (!sensors) return tl::unexpected(sensors.error());
   Result<Scene> scene = load(arguments.scene);
@@ -129,9 +131,9 @@ void add_reference(CLI::App& cli, int& status) {
       ->check(from_to(0, kMostThreads))
       ->type_name("N")
       ->capture_default_str();
-  command.callback([arguments, &status] {
+  command.callback([arguments, &command, &status] {
     set_thread_count(arguments->threads);
-    const Result<void> done = reference(*arguments);
+    const Result<void> done = reference(command, *arguments);
     status = done ? kGoalMet : fail(done.error());
   });
 }

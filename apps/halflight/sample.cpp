@@ -18,7 +18,7 @@ struct SampleArguments {
   int threads = 0;
 };
 
-Result<void> sample(const SampleArguments& arguments) {
+Result<void> sample(const CLI::App& command, const SampleArguments& arguments) {
   if (auto ok = check(arguments.lit); !ok) return ok;
   CommandFiles files;
   add_files(files, arguments.sensors);
@@ -30,6 +30,7 @@ Result<void> sample(const SampleArguments& arguments) {
   if (auto ok = check(files); !ok) return ok;
   const auto sensors = read_sensors(arguments.sensors);
   if (!sensors) return tl::unexpected(sensors.error());
+  warn_of_idle_sensors(command);
   const Result<SolverState> state = restore(arguments.checkpoint, files);
   if (!state) return tl::unexpected(state.error());
   return write_readings(arguments.sensors, *sensors, arguments.lit, *state);
@@ -47,9 +48,9 @@ void add_sample(CLI::App& cli, int& status) {
       ->check(from_to(0, kMostThreads))
       ->type_name("N")
       ->capture_default_str();
-  command.callback([arguments, &status] {
+  command.callback([arguments, &command, &status] {
     set_thread_count(arguments->threads);
-    const Result<void> done = sample(*arguments);
+    const Result<void> done = sample(command, *arguments);
     status = done ? kGoalMet : fail(done.error());
   });
 }

@@ -6,6 +6,7 @@
 #include "halflight/base/quantities.h"
 #include "halflight/output/read_light.h"
 #include "halflight/rays/sensor_placement.h"
+#include "idle_options.h"
 
 namespace halflight::app {
 namespace {
@@ -47,6 +48,11 @@ CLI::Option* add_sensor_arguments(CLI::App& command, SensorArguments& arguments)
 void add_files(CommandFiles& files, const SensorArguments& arguments) {
   files.reads("the sensors", arguments.points);
   files.writes("--points-out", arguments.points_out);
+}
+
+void warn_of_idle_sensors(const CLI::App& command) {
+  if (command.get_option("--points")->count() == 0)
+    warn_of_idle(command, {"--final-gather"}, "without --points");
 }
 
 Result<std::vector<Sensor>> read_sensors(const SensorArguments& arguments) {

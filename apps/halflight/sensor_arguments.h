@@ -25,6 +25,8 @@ struct SensorArguments {
 CLI::Option* add_sensor_arguments(CLI::App& command, SensorArguments& arguments);
 
 void add_files(CommandFiles& files, const SensorArguments& arguments);
+// Tells of options that only matter where there are sensors.
+void warn_of_idle_sensors(const CLI::App& command);
 
 // None without --points. Errors: --final-gather is no number; what is wrong with the file.
 Result<std::vector<Sensor>> read_sensors(const SensorArguments& arguments);

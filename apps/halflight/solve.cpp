@@ -42,10 +42,6 @@ struct SolveCommand {
   Outputs outputs;
 };
 
-void warn(const std::string& text) {
-  std::fputs(("halflight: warning: " + text + "\n").c_str(), stderr);
-}
-
 void warn_without_output(const Outputs& outputs) {
   if (outputs.lit.path.empty() && outputs.sensors.points.empty() && outputs.report.empty() &&
       outputs.checkpoint.empty())
@@ -152,7 +148,7 @@ class Saver {
   bool cut_short_ = false;
 };
 
-Result<int> run(const SolveCommand& command) {
+Result<int> run(const CLI::App& sub, const SolveCommand& command) {
   Report report;
   const auto start = std::chrono::steady_clock::now();
   Result<SolvePlan> plan = resolve(command.solve);
@@ -167,6 +163,7 @@ Result<int> run(const SolveCommand& command) {
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
   warn_without_output(command.outputs);
+  warn_of_idle_sensors(sub);
   report.end_phase("load", start);
 
   auto phase = std::chrono::steady_clock::now();
@@ -254,9 +251,9 @@ void add_solve(CLI::App& cli, int& status) {
       ->expected(0, 1)
       ->type_name("GROUPS");
   sub.add_flag("--resume", command->outputs.resume, "go on from the checkpoint")->needs(checkpoint);
-  sub.callback([command, &status] {
+  sub.callback([command, &sub, &status] {
     set_thread_count(command->solve.threads);
-    const Result<int> done = run(*command);
+    const Result<int> done = run(sub, *command);
     status = done ? *done : fail(done.error());
   });
 }

@@ -9,6 +9,7 @@
 #include "halflight/base/quantities.h"
 #include "halflight/hierarchy/surfaces.h"
 #include "halflight/visibility/multires_build.h"
+#include "idle_options.h"
 
 namespace halflight::app {
 namespace {
@@ -80,6 +81,23 @@ Result<float> resolve_feature_size(const VisibilityArguments& arguments) {
                                    arguments.feature_size, kShortest, kLongest),
                        {}, "write it like 5cm; 0 keeps all shadows exact");
   return static_cast<float>(*length);
+}
+
+Result<void> check_for_paths(const VisibilityArguments& arguments) {
+  if (const auto size = resolve_feature_size(arguments); !size) return tl::unexpected(size.error());
+  if (arguments.mode.value_or(VisibilityMode::exact) == VisibilityMode::exact) return {};
+  const auto pixels = pixel_size_wish(arguments.feature_size);
+  if (!pixels) return tl::unexpected(pixels.error());
+  if (!*pixels) return {};
+  return input_error(fmt::format("--feature-size '{}': paths have the same everywhere, not so many "
+                                 "pixels",
+                                 arguments.feature_size),
+                     {}, "give a length, like 5cm");
+}
+
+void warn_of_idle_visibility(const CLI::App& command, const VisibilityArguments& arguments) {
+  if (!arguments.mode)
+    warn_of_idle(command, {"--feature-size", "--bounces"}, "on paths without --visibility");
 }
 
 PathVisibility::PathVisibility(const World& world, VisibilityMode mode, float feature_size,
