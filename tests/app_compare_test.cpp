@@ -137,6 +137,12 @@ TEST_F(CompareCommand, BadInputEndsWithStatus1AndOneLineThatNamesTheFile) {
       {"compare a.png a.png --part 90,0,20,20", "90,0,20,20"},
       {"compare a.png a.png --mask mask.bmp --feature-size 4", "mask.bmp"},
       {"compare a.png a.png --feature-size -3", "feature-size"},
+      {"compare a.png a.png --feature-size nan", "feature-size"},
+      {"compare a.png a.png --exponent nan", "exponent"},
+      {"compare a.png a.png --feature-size 4 --worst -1", "worst"},
+      {"compare a.png a.png --feature-size 4 --worst 99999999999999999999", "worst"},
+      {"compare a.png a.png --worst 3", "feature-size"},
+      {"compare a.png a.png --difference ''", "difference"},
       {"reproduce figure99 -o out", "figure99"},
   };
   for (const auto& [arguments, named] : cases) {

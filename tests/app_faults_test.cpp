@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
 
 #include "gltf_check.h"
 #include "halflight/base/hash.h"
@@ -186,6 +187,135 @@ TEST_F(Faults, LightmapThatDoesNotFitLeavesThePicturesThatWereThere) {
   EXPECT_EQ(run_under(limit, kSolve + "-o lit.glb --lightmap 128"), kSystemFailure);
   EXPECT_EQ(text("lit.lightmap.exr"), exr);
   EXPECT_EQ(text("lit.lightmap.png"), png);
+  expect_nothing_unfinished();
+}
+
+// Commands that were given a name twice by mistake: each tells so and touches nothing.
+class NamesGivenTwice : public Faults {
+ protected:
+  void expect_refused(const std::string& arguments, const std::string& reason) const {
+    const auto before = files();
+    EXPECT_EQ(run(arguments), 1) << arguments;
+    EXPECT_THAT(text("err"), HasSubstr(reason)) << arguments;
+    expect_one_line();
+    EXPECT_EQ(files(), before) << arguments;
+  }
+  // Names and bytes, without what the program printed.
+  std::map<std::string, std::string> files() const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::directory_iterator(folder_.path()))
+      if (entry.is_regular_file()) all[entry.path().filename()] = read_text(entry.path());
+    all.erase("out");
+    all.erase("err");
+    return all;
+  }
+};
+
+TEST_F(NamesGivenTwice, NoOutputReplacesAnInput) {
+  keep();
+  ASSERT_EQ(run("scene cornell-box -o box.glb"), 0);
+  ASSERT_EQ(run("solve box.glb --feature-size 50cm --progress none --checkpoint box.ckpt"), 0);
+  folder_.write("rules.toml", "[[rule]]\nmaterial = \"wall\"\nfeature-size = \"10cm\"\n");
+  folder_.write("camera.json", R"({"position": [1, 2, 4], "target": [3, 1, 0]})");
+  const std::string box = "solve box.glb --feature-size 50cm ";
+  const std::string paths = "reference room.obj --spp 2 --points sensors.txt --points-out ";
+  for (const std::string& arguments :
+       {box + "-o box.glb", box + "-o ./box.glb", box + "--checkpoint box.glb",
+        box + "--report box.glb", kSolve + "--points sensors.txt --points-out sensors.txt",
+        kSolve + "--feature-sizes rules.toml --report rules.toml",
+        kSolve + "--importance camera.json --report camera.json",
+        std::string("solve room.obj --feature-size 9px@camera.json --report camera.json"),
+        std::string("sample kept -o kept"), std::string("sample box.ckpt -o box.glb"),
+        std::string("mix kept -o kept"), std::string("mix kept -o room.obj"), paths + "sensors.txt",
+        paths + "room.obj", "render kept" + kView + "-o kept.png --visibility-mask kept.png",
+        std::string("compare kept.png kept.png --difference kept.png"),
+        std::string("compare kept.png kept.png --mask kept.png --feature-size 4")})
+    expect_refused(arguments, "would replace");
+}
+
+TEST_F(NamesGivenTwice, NoTwoOutputsHaveOneName) {
+  keep();
+  for (const std::string& arguments :
+       {kSolve + "-o same.glb --report same.glb", kSolve + "-o same.glb --report ./same.glb",
+        kSolve + "-o a/../same.glb --checkpoint same.glb",
+        kSolve + "-o lit.glb --lightmap 64 --report lit.lightmap.exr",
+        std::string("compare kept.png kept.png --feature-size 1 --feature-size 2 --mask m.png "
+                    "--difference m-2.png"),
+        std::string("compare kept.png kept.png --feature-size 1 --feature-size 1.0000001 --mask "
+                    "m.png")})
+    expect_refused(arguments, "would replace what");
+}
+
+TEST_F(NamesGivenTwice, LinksAreNames) {
+  fs::create_symlink("room.obj", path("soft.obj"));
+  fs::create_hard_link(path("room.obj"), path("hard.obj"));
+  fs::create_directory_symlink(".", path("here"));
+  for (const char* name : {"soft.obj", "hard.obj", "here/room.obj"})
+    expect_refused(kSolve + "-o " + name, "would replace the scene");
+  expect_refused(kSolve + "-o here/new.glb --report new.glb", "would replace what -o writes");
+}
+
+TEST_F(NamesGivenTwice, FilesThatASceneNamesAreInputs) {
+  expect_refused(kSolve + "-o room.mtl", "would replace a file of the scene");
+  folder_.write("room.mtl", std::string(kRoomMaterials) + "map_Kd -s 2 2 1 old wood.png\n");
+  folder_.write("old wood.png", "no picture");
+  expect_refused("render room.obj --path-trace 1" + kView + "-o 'old wood.png'",
+                 "would replace a file of the scene");
+  ASSERT_EQ(run("scene cornell-box -o box.glb"), 0);
+  test::GlbFile box(path("box.glb"));
+  box.document["buffers"][0]["uri"] = "box%20of \"one\".bin";
+  folder_.write("box.gltf", box.document.dump());
+  folder_.write("box of \"one\".bin", std::string(box.binary.begin(), box.binary.end()));
+  expect_refused("solve box.gltf -o 'box of \"one\".bin'", "would replace a file of the scene");
+}
+
+TEST_F(NamesGivenTwice, DevicesAndTheCheckpointGoneOnFromMayBe) {
+  const std::string all = kSolve + "--points sensors.txt --points-out ";
+  EXPECT_EQ(run(all + "/dev/null -o /dev/null --report /dev/null"), 0) << text("err");
+  EXPECT_EQ(run(kSolve + "--checkpoint c"), 0) << text("err");
+  EXPECT_EQ(run(kSolve + "--checkpoint c --resume -o lit.glb"), 0) << text("err");
+  EXPECT_EQ(run(all + "/dev/stdout"), 0) << text("err");
+  EXPECT_EQ(irradiance_of(text("out")).size(), 300u);
+  EXPECT_TRUE(fs::is_symlink("/dev/stdout"));
+}
+
+TEST_F(Faults, FolderInPlaceOfADerivedNameIsToldBeforeAnyWork) {
+  keep();
+  for (const char* name : {"lit.lightmap.exr", "other.lightmap.png", "m-2.png"})
+    fs::create_directory(path(name));
+  const std::string compare = "compare kept.png kept.png --feature-size 1 --feature-size 2 ";
+  for (const std::string& arguments :
+       {kSolve + "-o lit.glb --lightmap 64 --checkpoint c",
+        kSolve + "-o other.glb --lightmap 64 --checkpoint c",
+        std::string("sample kept -o lit.glb --lightmap 64"),
+        std::string("mix kept -o other.glb --lightmap 64"), compare + "--mask m.png",
+        compare + "--false-colour m.png"}) {
+    EXPECT_EQ(run(arguments), kSystemFailure) << arguments;
+    EXPECT_THAT(text("err"), HasSubstr("Is a directory")) << arguments;
+    expect_one_line();
+  }
+  for (const char* name : {"lit.glb", "c", "other.lightmap.exr", "m-1.png"})
+    EXPECT_FALSE(fs::exists(path(name))) << name;
+  EXPECT_EQ(run("reproduce figure2 -o sensors.txt"), kSystemFailure);
+  expect_one_line();
+  fs::create_directories(path("pages/numbers.json"));
+  EXPECT_EQ(run("reproduce figure2 -o pages"), kSystemFailure);
+  expect_one_line();
+}
+
+TEST_F(Faults, NamesMayBeAsLongAsTheSystemAllows) {
+  for (const std::size_t length : {239, 245, 255}) {
+    const std::string name(length - 4, 'x');
+    EXPECT_EQ(run("scene cornell-box -o " + name + ".glb"), 0) << text("err");
+    EXPECT_GT(text(name + ".glb").size(), 1000u);
+  }
+  std::string umlauts;
+  while (umlauts.size() < 250) umlauts += "\u00e4";
+  EXPECT_EQ(run("scene cornell-box -o " + umlauts + ".glb"), 0) << text("err");
+  EXPECT_EQ(run(kSolve + "--checkpoint c -o " + std::string(252, 'x') + ".glb"), kSystemFailure);
+  EXPECT_THAT(text("err"), HasSubstr("File name too long"));
+  expect_one_line();
+  EXPECT_FALSE(fs::exists(path("c")));
   expect_nothing_unfinished();
 }
 

@@ -81,6 +81,11 @@ TEST_F(SceneCommand, RejectsWhatItCannotBuildAndWritesNothing) {
   EXPECT_EQ(run("office --count many"), 1);
   EXPECT_EQ(run("furnace --reflectance 1.5"), 1);
   EXPECT_NE(read("err").find("reflectance"), std::string::npos);
+  EXPECT_EQ(run("furnace --reflectance nan"), 1);
+  EXPECT_NE(read("err").find("'nan' is not a number from 0 to"), std::string::npos) << read("err");
+  EXPECT_EQ(run("loose-triangles --size nan"), 1);
+  EXPECT_EQ(run("office --count 99999999999999999999"), 1);
+  EXPECT_FALSE(exists("loose-triangles.glb"));
   EXPECT_FALSE(exists("office.glb"));
   EXPECT_FALSE(exists("furnace.glb"));
 }

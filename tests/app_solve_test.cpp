@@ -1,6 +1,7 @@
 // The solve command from outside: exit status, files, units, threads, interruption.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -18,6 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 class SolveCommand : public RoomCommand {};
+
+long lines_of(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
 TEST_F(SolveCommand, WritesTheSameBytesWhateverTheThreads) {
   for (const char* links : {"refined", "sampled"}) {
@@ -165,12 +168,109 @@ TEST_F(SolveCommand, RejectsBadUseInOneLine) {
                                 "solve room.obj --feature-size xpx@auto",
                                 "solve room.obj --importance nowhere",
                                 "solve room.obj --feature-sizes none.toml",
-                                "solve room.obj --feature-size inf"}) {
+                                "solve room.obj --feature-size inf",
+                                "solve room.obj --feature-size 1e39",
+                                "solve room.obj --feature-size 1e30",
+                                "solve room.obj --feature-size 1e-50",
+                                "solve room.obj --report ''",
+                                "solve room.obj --checkpoint ''",
+                                "solve room.obj --points ''"}) {
     EXPECT_EQ(run(std::string(arguments) + " --progress none -o lit.glb"), 1) << arguments;
     const std::string err = text("err");
     EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << arguments << "\n" << err;
     EXPECT_FALSE(fs::exists(path("lit.glb"))) << arguments;
   }
+}
+
+TEST_F(SolveCommand, OtherCommandsRejectNumbersThatTheyCannotHold) {
+  const std::string reference = "reference room.obj --points sensors.txt --points-out o.txt ";
+  const std::string render = "render room.obj --feature-size 1 --size 8x8 -o o.png ";
+  for (const std::string& arguments :
+       {reference + "--spp 2 --seed -1", reference + "--spp 2 --seed 99999999999999999999",
+        reference + "--spp 2 --seed nan", reference + "--spp -4294967294",
+        reference + "--spp 2 --threads 2147483647", reference + "--spp 2 --threads -1",
+        render + "--seed -1", render + "--seed 99999999999999999999", render + "--path-trace -1",
+        render + "--samples 99999999999999999999"}) {
+    EXPECT_EQ(run(arguments), 1) << arguments;
+    EXPECT_EQ(lines_of(text("err")), 1) << arguments << "\n" << text("err");
+    EXPECT_FALSE(fs::exists(path("o.txt")) || fs::exists(path("o.png"))) << arguments;
+  }
+  EXPECT_EQ(run(reference + "--spp 2 --seed 18446744073709551615"), 0) << text("err");
+}
+
+TEST_F(SolveCommand, RejectsAnOutputWithoutAName) {
+  EXPECT_EQ(run("solve room.obj --feature-size 1 --progress none -o ''"), 1);
+  EXPECT_EQ(lines_of(text("err")), 1) << text("err");
+}
+
+TEST_F(SolveCommand, LargestFeatureSizeGivesACheckpointThatCanBeRead) {
+  EXPECT_EQ(
+      run("solve room.obj --feature-size 1e15 --progress none --checkpoint c --report r.json"), 0)
+      << text("err");
+  EXPECT_TRUE(read_json(path("r.json"))["settings"]["feature_size"].is_number());
+  EXPECT_EQ(run("sample c --points sensors.txt"), 0) << text("err");
+}
+
+TEST_F(SolveCommand, PathTracersRejectWhatSolvingRejects) {
+  const std::string render = "render room.obj --size 8x8 --path-trace 1 -o o.png ";
+  const std::string reference =
+      "reference room.obj --points sensors.txt --spp 2 --points-out o.txt ";
+  for (const std::string& arguments :
+       {render + "--error banana", render + "--links banana", render + "--memory banana",
+        render + "--time banana", render + "--feature-size banana",
+        render + "--visibility multires --feature-size 12px@auto",
+        reference + "--visibility multires --feature-size 12px@nosuchcamera",
+        reference + "--feature-size banana", reference + "--feature-size 1e39"}) {
+    EXPECT_EQ(run(arguments), 1) << arguments;
+    EXPECT_EQ(lines_of(text("err")), 1) << arguments << "\n" << text("err");
+    EXPECT_FALSE(fs::exists(path("o.txt")) || fs::exists(path("o.png"))) << arguments;
+  }
+}
+
+TEST_F(SolveCommand, WarnsInOneLineOfOptionsWithoutEffect) {
+  ASSERT_EQ(run("solve room.obj --feature-size 1 --progress none --light-groups --checkpoint c"),
+            0);
+  const std::string solve = "solve room.obj --feature-size 1 --progress none --report r.json ";
+  const std::string view = " --size 8x8 --progress none --camera 1,2,4.5,3,1,0,70 ";
+  const std::string traced = "render room.obj --path-trace 1" + view;
+  const std::string reference = "reference room.obj --points sensors.txt --spp 2 ";
+  const std::pair<std::string, std::string> cases[] = {
+      {solve + "--final-gather 8", "--final-gather"},
+      {"sample c -o lit.glb --final-gather 8", "--final-gather"},
+      {"mix c", "nothing will be written"},
+      {traced + "-o o.png --error 5% --samples 3 --importance nosuch",
+       "--error, --importance, --samples"},
+      {traced + "-o o.png --feature-size 12px@nosuch", "--feature-size"},
+      {traced + "-o o.exr --exposure 2 --tone-map none", "--exposure, --tone-map"},
+      {"render c" + view + "-o o.png --bounces clusters", "--bounces"},
+      {reference + "--feature-size 50cm --bounces clusters", "--feature-size, --bounces"}};
+  for (const auto& [arguments, named] : cases) {
+    EXPECT_EQ(run(arguments), 0) << arguments;
+    const std::string err = text("err");
+    EXPECT_EQ(lines_of(err), 1) << arguments << "\n" << err;
+    EXPECT_EQ(err.rfind("halflight: warning: ", 0), 0u) << arguments << "\n" << err;
+    EXPECT_NE(err.find(named + " "), std::string::npos) << arguments << "\n" << err;
+  }
+  for (const std::string& silent :
+       {traced + "-o o.png --visibility exact --feature-size 50cm",
+        reference + "--visibility exact --feature-size 50cm", traced + "-o o.png --exposure 2"}) {
+    EXPECT_EQ(run(silent), 0) << silent;
+    EXPECT_EQ(text("err"), "") << silent;
+  }
+  EXPECT_EQ(run(traced + "-o o.png --mask-samples 8"), 1);
+  EXPECT_EQ(lines_of(text("err")), 1) << text("err");
+}
+
+TEST_F(SolveCommand, CamerasDoNotAskForPicturesThatFillTheMemory) {
+  folder_.write("huge.json", R"({"position": [1, 2, 4], "target": [3, 1, 0], "width": 32768,
+                                 "height": 32768})");
+  EXPECT_EQ(run("render room.obj --path-trace 1 --camera huge.json -o o.png"), 1);
+  EXPECT_EQ(lines_of(text("err")), 1) << text("err");
+  EXPECT_NE(text("err").find("--size 32768x32768"), std::string::npos) << text("err");
+  EXPECT_EQ(run("render room.obj --path-trace 1 --camera huge.json --size 8x8 --progress none "
+                "-o o.png"),
+            0)
+      << text("err");
 }
 
 TEST_F(SolveCommand, UnwritablePlaceIsASystemFailure) {

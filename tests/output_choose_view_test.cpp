@@ -81,6 +81,24 @@ TEST_F(ChooseView, NumbersAreInTheCoordinatesOfTheFile) {
   EXPECT_FALSE(choose("1,2,3,4,5,6,180"));
 }
 
+TEST_F(ChooseView, PicturesAreAsWideAsUsualAndOfBoundedHeight) {
+  using Size = std::pair<int, int>;
+  const auto size_at = [](float aspect) {
+    View view;
+    view.camera.aspect = aspect;
+    return picture_size(view);
+  };
+  EXPECT_EQ(size_at(0.f), Size(1280, 720));
+  EXPECT_EQ(size_at(16.f / 9.f), Size(1280, 720));
+  EXPECT_EQ(size_at(0.5f), Size(1280, 2560));
+  for (const float narrow : {1e-6f, 1e-30f, 1e-40f}) EXPECT_EQ(size_at(narrow), Size(1280, 5120));
+  EXPECT_EQ(size_at(1e30f), Size(1280, 1));
+  View asked;
+  asked.width = 640;
+  asked.height = 320;
+  EXPECT_EQ(picture_size(asked), Size(640, 320));
+}
+
 TEST_F(ChooseView, ReadsCameraFiles) {
   const auto file =
       folder_.write("view.json", R"({"camera": {"position": [0, 0, 100], "forward": [0, 5, 0],

@@ -23,9 +23,21 @@ Result<SolverState> restore(const Checkpoint& checkpoint,
   return state;
 }
 
-Result<SolverState> restore(const CheckpointArguments& arguments) {
+void add_files(CommandFiles& files, const CheckpointArguments& arguments) {
+  files.reads("the checkpoint", arguments.path);
+}
+
+Result<void> check_with_scene(CommandFiles files, const Checkpoint& checkpoint,
+                              const std::filesystem::path& instead) {
+  files.reads_scene(instead.empty() ? checkpoint.origin().scene.path : instead);
+  return check(files);
+}
+
+Result<SolverState> restore(const CheckpointArguments& arguments, CommandFiles files) {
   const auto checkpoint = Checkpoint::open(arguments.path);
   if (!checkpoint) return tl::unexpected(checkpoint.error());
+  if (auto ok = check_with_scene(std::move(files), *checkpoint, arguments.scene); !ok)
+    return tl::unexpected(ok.error());
   Result<Scene> scene = checkpoint->load_scene(arguments.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);

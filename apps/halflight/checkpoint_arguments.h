@@ -5,6 +5,7 @@
 
 #include <CLI/App.hpp>
 
+#include "command_files.h"
 #include "halflight/base/result.h"
 #include "halflight/solve/checkpoint.h"
 
@@ -23,7 +24,12 @@ CLI::Option* add_scene_of_checkpoint(CLI::App& command, std::filesystem::path& s
 // The solution over a world made from the checkpoint's scene, with light groups taken apart.
 Result<SolverState> restore(const Checkpoint& checkpoint,
                             const std::shared_ptr<const World>& world);
-// The solution over its scene, warnings of which are printed.
-Result<SolverState> restore(const CheckpointArguments& arguments);
+// The solution over its scene, warnings of which are printed. An error where one of the files that
+// are written would replace the scene.
+Result<SolverState> restore(const CheckpointArguments& arguments, CommandFiles files);
+void add_files(CommandFiles& files, const CheckpointArguments& arguments);
+// The scene is known once the checkpoint is read.
+Result<void> check_with_scene(CommandFiles files, const Checkpoint& checkpoint,
+                              const std::filesystem::path& instead);
 
 }  // namespace halflight::app

@@ -1,6 +1,8 @@
 // The sub-commands: each adds itself to the command line and, when chosen, runs.
 #pragma once
 
+#include <string>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -20,6 +22,8 @@ enum ExitStatus {
 
 // Prints the error's one line to stderr and returns its exit status.
 int fail(const Error& error);
+// Prints a warning of one line to stderr.
+void warn(const std::string& text);
 
 // Each registers a sub-command; its callback stores the exit status in `status`.
 void add_inspect(CLI::App& cli, int& status);

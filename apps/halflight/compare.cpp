@@ -10,17 +10,20 @@
 
 #include <fmt/format.h>
 
+#include "command_files.h"
 #include "commands.h"
 #include "compare_output.h"
 #include "halflight/base/parallel.h"
 #include "halflight/features/feature_mask.h"
 #include "halflight/features/shadow_estimate.h"
-#include "halflight/io/atomic_file.h"
 #include "halflight/io/image_read.h"
 #include "halflight/io/image_write.h"
+#include "number_checks.h"
 
 namespace halflight::app {
 namespace {
+
+constexpr std::size_t kMostListed = 1'000'000'000;  // features
 
 struct Arguments {
   CompareInput input;
@@ -98,17 +101,25 @@ Result<Rectangle> parse_part(const std::string& text, const Image& picture) {
       fmt::format("give X,Y,WIDTH,HEIGHT in pixels within {} x {}", picture.width, picture.height));
 }
 
-Result<void> check_names(const CompareFiles& files) {
-  for (const auto* path : {&files.mask, &files.difference, &files.false_colour})
-    if (!path->empty()) {
+Result<void> check_files(const Arguments& arguments) {
+  const CompareFiles& outputs = arguments.files;
+  for (const auto* path : {&outputs.mask, &outputs.difference, &outputs.false_colour})
+    if (!path->empty())
       if (auto known = check_image_name(*path); !known) return known;
-      if (auto ok = check_writable(*path); !ok) return ok;
-    }
-  return {};
+  CommandFiles files;
+  files.reads("the reference", arguments.input.reference);
+  files.reads("the picture to judge", arguments.input.test);
+  files.reads("the visibility mask", arguments.input.visibility_mask);
+  files.writes("--difference", outputs.difference);
+  const auto& sizes = arguments.options.feature_sizes;
+  for (const auto& path : names_for(outputs.mask, sizes)) files.writes("--mask", path);
+  for (const auto& path : names_for(outputs.false_colour, sizes))
+    files.writes("--false-colour", path);
+  return check(files);
 }
 
 Result<void> run(Arguments& arguments) {
-  if (auto names = check_names(arguments.files); !names) return names;
+  if (auto ok = check_files(arguments); !ok) return ok;
   auto pictures = read_pictures(arguments.input);
   if (!pictures) return tl::unexpected(pictures.error());
   for (const std::string& text : arguments.parts) {
@@ -143,28 +154,37 @@ void add_compare(CLI::App& cli, int& status) {
   const auto a = std::make_shared<Arguments>();
   command->add_option("REF", a->input.reference, "Reference picture, PNG or EXR")->required();
   command->add_option("TEST", a->input.test, "Picture to judge, of the same size")->required();
+  CLI::Option* feature_size = command
+                                  ->add_option("--feature-size", a->options.feature_sizes,
+                                               "Feature size s in pixels; may repeat for a curve")
+                                  ->check(from_to(0.0, 1e6).description("0 to 1e6"))
+                                  ->allow_extra_args(false);
   command
-      ->add_option("--feature-size", a->options.feature_sizes,
-                   "Feature size s in pixels; may repeat for a curve")
-      ->check(CLI::Range(0.0, 1e6))
-      ->allow_extra_args(false);
-  command->add_option("--visibility-mask", a->input.visibility_mask,
-                      "Share of the light that each pixel of REF sees; white sees all of it. "
-                      "Default: estimated from REF");
+      ->add_option("--visibility-mask", a->input.visibility_mask,
+                   "Share of the light that each pixel of REF sees; white sees all of it. "
+                   "Default: estimated from REF")
+      ->check(file_name());
   command->add_option("--exponent", a->options.p, "Exponent p of the norm")
-      ->check(CLI::Range(1.0, 64.0));
+      ->check(from_to(1.0, 64.0).description("1 to 64"));
   command->add_flag("--four-neighbours", a->four_neighbours,
                     "Erode and expand with 4 neighbours instead of 8");
   command->add_option("--part", a->parts, "Values of X,Y,WIDTH,HEIGHT alone; may repeat")
       ->allow_extra_args(false);
-  command->add_option("--worst", a->options.worst_regions,
-                      "List so many features with the largest error");
-  command->add_option("--mask", a->files.mask, "Write the feature mask; black is inside");
-  command->add_option(
-      "--difference", a->files.difference,
-      "Write TEST - REF; PNG: grey is 0, white and black are the largest difference");
-  command->add_option("--false-colour", a->files.false_colour,
-                      "Write the error of every pixel as colours");
+  command
+      ->add_option("--worst", a->options.worst_regions,
+                   "List so many features with the largest error")
+      ->check(from_to(std::size_t{0}, kMostListed))
+      ->needs(feature_size);
+  command->add_option("--mask", a->files.mask, "Write the feature mask; black is inside")
+      ->check(file_name());
+  command
+      ->add_option("--difference", a->files.difference,
+                   "Write TEST - REF; PNG: grey is 0, white and black are the largest difference")
+      ->check(file_name());
+  command
+      ->add_option("--false-colour", a->files.false_colour,
+                   "Write the error of every pixel as colours")
+      ->check(file_name());
   command->add_flag("--json", a->json, "Print JSON");
   command->callback([a, &status] {
     const Result<void> done = run(*a);

@@ -13,11 +13,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::filesystem::path name_with(const std::filesystem::path& path, double feature_size) {
+  return path.parent_path() /
+         fmt::format("{}-{:g}{}", path.stem().string(), feature_size, path.extension().string());
+}
+
 std::filesystem::path name_for(const std::filesystem::path& path, const Comparison& result,
                                const ErrorAtSize& at) {
-  if (result.at_sizes.size() <= 1) return path;
-  return path.parent_path() /
-         fmt::format("{}-{:g}{}", path.stem().string(), at.feature_size, path.extension().string());
+  return result.at_sizes.size() <= 1 ? path : name_with(path, at.feature_size);
 }
 
 Image mask_image(const BinaryImage& mask) {
@@ -69,6 +72,18 @@ Json error_json(const ErrorAtSize& at) {
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> names_for(const std::filesystem::path& path,
+                                             const std::vector<double>& feature_sizes) {
+  if (path.empty()) return {};
+  if (feature_sizes.size() <= 1) return {path};
+  std::vector<double> sizes = feature_sizes;
+  std::sort(sizes.begin(), sizes.end());
+  sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
+  std::vector<std::filesystem::path> names;
+  for (const double size : sizes) names.push_back(name_with(path, size));
+  return names;
+}
 
 Result<void> write_pictures(const CompareFiles& files, const Image& reference, const Image& test,
                             const Comparison& result) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "halflight/base/image.h"
 #include "halflight/base/result.h"
@@ -21,6 +22,9 @@ struct CompareFiles {
   std::filesystem::path mask, difference, false_colour;
   bool any() const { return !mask.empty() || !difference.empty() || !false_colour.empty(); }
 };
+// The names that are written for one of these, each once.
+std::vector<std::filesystem::path> names_for(const std::filesystem::path& path,
+                                             const std::vector<double>& feature_sizes);
 Result<void> write_pictures(const CompareFiles& files, const Image& reference, const Image& test,
                             const Comparison& result);
 

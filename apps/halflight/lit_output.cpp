@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "halflight/io/atomic_file.h"
 #include "halflight/io/image_write.h"
 #include "halflight/io/write_gltf.h"
 #include "halflight/output/bake_lightmap.h"
@@ -55,8 +54,9 @@ Result<Lightmap> bake(int size, const SolverState& state, const SolutionReader& 
 }  // namespace
 
 void add_lit_arguments(CLI::App& command, LitArguments& arguments) {
-  CLI::Option* output =
-      command.add_option("-o,--output", arguments.path, "lit scene, GLB")->type_name("lit.glb");
+  CLI::Option* output = command.add_option("-o,--output", arguments.path, "lit scene, GLB")
+                            ->check(file_name())
+                            ->type_name("lit.glb");
   command
       .add_option("--lightmap", arguments.lightmap,
                   "also write the irradiance as a picture of SIZE x SIZE texels on the lit scene's "
@@ -69,7 +69,14 @@ Result<void> check(const LitArguments& arguments) {
   if (arguments.lightmap)
     if (const auto size = lightmap_size(*arguments.lightmap); !size)
       return tl::unexpected(size.error());
-  return check_writable(arguments.path);
+  return {};
+}
+
+void add_files(CommandFiles& files, const LitArguments& arguments) {
+  files.writes("-o", arguments.path);
+  if (!arguments.lightmap) return;
+  for (const char* ending : {"lightmap.exr", "lightmap.png"})
+    files.writes("--lightmap", beside(arguments.path, ending));
 }
 
 std::size_t least_memory(const LitArguments& arguments, std::size_t vertices) {

@@ -8,6 +8,7 @@
 
 #include <CLI/App.hpp>
 
+#include "command_files.h"
 #include "halflight/base/progress.h"
 #include "halflight/base/result.h"
 #include "halflight/output/lit_mesh.h"
@@ -25,6 +26,9 @@ struct LitArguments {
 void add_lit_arguments(CLI::App& command, LitArguments& arguments);
 // Tells of bad arguments before any work is done.
 Result<void> check(const LitArguments& arguments);
+
+// The lit scene, and the pictures of the lightmap beside it.
+void add_files(CommandFiles& files, const LitArguments& arguments);
 
 // Bytes that writing takes at least, for scenes of so many vertices.
 std::size_t least_memory(const LitArguments& arguments, std::size_t vertices);

@@ -78,6 +78,10 @@ int fail(const Error& error) {
   return error.kind == Error::Kind::input ? kBadInput : kSystemFailure;
 }
 
+void warn(const std::string& text) {
+  std::fputs(("halflight: warning: " + text + "\n").c_str(), stderr);
+}
+
 }  // namespace halflight::app
 
 int main(int argc, char** argv) {

@@ -9,6 +9,7 @@
 #include "halflight/base/parallel.h"
 #include "halflight/solve/mix.h"
 #include "lit_output.h"
+#include "number_checks.h"
 #include "sensor_arguments.h"
 
 namespace halflight::app {
@@ -67,17 +68,25 @@ Result<std::vector<Rgb>> factors_of(const MixArguments& arguments,
   return factors;
 }
 
-Result<void> mix_groups(const MixArguments& arguments) {
+Result<void> mix_groups(const CLI::App& command, const MixArguments& arguments) {
   if (auto ok = check(arguments.lit); !ok) return ok;
+  CommandFiles files;
+  add_files(files, arguments.sensors);
+  add_files(files, arguments.lit);
+  add_files(files, arguments.checkpoint);
+  if (auto ok = check(files); !ok) return ok;
   const auto sensors = read_sensors(arguments.sensors);
   if (!sensors) return tl::unexpected(sensors.error());
-  Result<SolverState> state = restore(arguments.checkpoint);
+  warn_of_idle_sensors(command);
+  Result<SolverState> state = restore(arguments.checkpoint, files);
   if (!state) return tl::unexpected(state.error());
   if (state->grouped.groups.empty())
     return input_error("the checkpoint has no light groups", arguments.checkpoint.path.string(),
                        "solve with --light-groups");
   const auto factors = factors_of(arguments, state->grouped.groups);
   if (!factors) return tl::unexpected(factors.error());
+  if (arguments.sensors.points.empty() && arguments.lit.path.empty())
+    warn("nothing will be written (add -o lit.glb or --points)");
   relight(*state, *factors);
   mix(*state, *factors);
   return write_readings(arguments.sensors, *sensors, arguments.lit, *state);
@@ -98,12 +107,12 @@ void add_mix(CLI::App& cli, int& status) {
   add_sensor_arguments(command, arguments->sensors);
   add_lit_arguments(command, arguments->lit);
   command.add_option("--threads", arguments->threads, "0: all cores")
-      ->check(CLI::Range(0, 4096).description(""))
+      ->check(from_to(0, kMostThreads))
       ->type_name("N")
       ->capture_default_str();
-  command.callback([arguments, &status] {
+  command.callback([arguments, &command, &status] {
     set_thread_count(arguments->threads);
-    const Result<void> done = mix_groups(*arguments);
+    const Result<void> done = mix_groups(command, *arguments);
     status = done ? kGoalMet : fail(done.error());
   });
 }

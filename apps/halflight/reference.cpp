@@ -4,11 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "command_files.h"
 #include "commands.h"
 #include "halflight/base/parallel.h"
-#include "halflight/io/atomic_file.h"
 #include "halflight/io/sensors.h"
 #include "halflight/rays/reference_sensors.h"
+#include "number_checks.h"
 #include "scene_arguments.h"
 #include "terminal_progress.h"
 #include "visibility_arguments.h"
@@ -60,10 +61,16 @@ void report_bias(const TimedEstimates& tried, const TimedEstimates& reference) {
              stderr);
 }
 
-Result<void> reference(const ReferenceArguments& arguments) {
+Result<void> reference(const CLI::App& command, const ReferenceArguments& arguments) {
+  if (auto ok = check_for_paths(arguments.visibility); !ok) return ok;
+  CommandFiles files;
+  files.reads("the sensors", arguments.points);
+  files.reads_scene(arguments.scene.path);
+  files.writes("--points-out", arguments.points_out);
+  if (auto ok = check(files); !ok) return ok;
+  warn_of_idle_visibility(command, arguments.visibility);
   const auto sensors = read_sensors(arguments.points);
   if (!sensors) return tl::unexpected(sensors.error());
-  if (auto ok = check_writable(arguments.points_out); !ok) return ok;
   Result<Scene> scene = load(arguments.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
@@ -108,21 +115,25 @@ void add_reference(CLI::App& cli, int& status) {
       .add_option("--points-out", arguments->points_out,
                   "where to write the sensors with Er Eg Eb and their standard error (RMS of the "
                   "channels); default: standard output")
+      ->check(file_name())
       ->type_name("FILE");
   command.add_option("--spp", arguments->samples, "paths per sensor")
       ->type_name("N")
-      ->check(CLI::Range(2u, 1u << 30))
+      ->check(from_to(2u, 1u << 30).description("2 to 2^30"))
       ->required();
   add_visibility_arguments(command, arguments->visibility, "exact");
   add_bounce_argument(command, arguments->visibility);
   command.add_option("--seed", arguments->seed, "picks another set of samples")
+      ->check(any_number<std::uint64_t>())
+      ->type_name("N")
       ->capture_default_str();
   command.add_option("--threads", arguments->threads, "0: all cores")
-      ->check(CLI::NonNegativeNumber)
+      ->check(from_to(0, kMostThreads))
+      ->type_name("N")
       ->capture_default_str();
-  command.callback([arguments, &status] {
+  command.callback([arguments, &command, &status] {
     set_thread_count(arguments->threads);
-    const Result<void> done = reference(*arguments);
+    const Result<void> done = reference(command, *arguments);
     status = done ? kGoalMet : fail(done.error());
   });
 }

@@ -5,16 +5,18 @@
 #include <fmt/format.h>
 
 #include "checkpoint_arguments.h"
+#include "command_files.h"
 #include "commands.h"
 #include "halflight/base/parallel.h"
-#include "halflight/io/atomic_file.h"
 #include "halflight/io/image_write.h"
 #include "halflight/output/lit_mesh.h"
 #include "halflight/output/solution_image.h"
 #include "halflight/rays/automatic_view.h"
 #include "halflight/rays/path_traced_image.h"
 #include "halflight/solve/memory.h"
+#include "idle_options.h"
 #include "lit_output.h"
+#include "number_checks.h"
 #include "scene_arguments.h"
 #include "solve_arguments.h"
 #include "solve_run.h"
@@ -37,9 +39,38 @@ struct RenderArguments {
 
 Result<void> check(const RenderArguments& arguments) {
   if (auto ok = check(arguments.view); !ok) return ok;
+  if (const auto plan = resolve(arguments.solve); !plan) return tl::unexpected(plan.error());
+  if (arguments.path_trace > 0)
+    if (auto ok = check_for_paths(arguments.solve.visibility); !ok) return ok;
   if (arguments.visibility_output.empty()) return {};
-  if (auto known = check_image_name(arguments.visibility_output); !known) return known;
-  return check_writable(arguments.visibility_output);
+  return check_image_name(arguments.visibility_output);
+}
+
+CommandFiles files_of(const RenderArguments& arguments, bool checkpoint) {
+  CommandFiles files;
+  add_files(files, arguments.view);
+  files.writes("--visibility-mask", arguments.visibility_output);
+  add_files(files, arguments.solve);
+  if (checkpoint)
+    files.reads("the checkpoint", arguments.scene.path);
+  else
+    files.reads_scene(arguments.scene.path);
+  return files;
+}
+
+// Scripts may take pictures of solved and of traced light by the same options.
+void warn_of_idle_options(const CLI::App& command, const RenderArguments& arguments) {
+  if (arguments.path_trace == 0) {
+    warn_of_idle(command, {"--bounces"}, "without --path-trace");
+  } else {
+    warn_of_idle(command,
+                 {"--error", "--time", "--memory", "--links", "--hierarchy", "--intra-cluster",
+                  "--importance", "--feature-sizes", "--samples"},
+                 "with --path-trace");
+    warn_of_idle_visibility(command, arguments.solve.visibility);
+  }
+  if (arguments.view.output.extension() == ".exr")
+    warn_of_idle(command, {"--exposure", "--tone-map"}, "on .exr, which holds radiance");
 }
 
 // The scene of a checkpoint and the light in it are what they are.
@@ -100,13 +131,19 @@ Result<Image> path_traced(const RenderArguments& arguments, const World& world, 
                            view.height, arguments.path_trace, arguments.seed, progress);
 }
 
-Result<void> render(const RenderArguments& arguments) {
+Result<void> render(const CLI::App& command, const RenderArguments& arguments) {
   if (auto ok = check(arguments); !ok) return ok;
   std::optional<Checkpoint> checkpoint;
+  CommandFiles files = files_of(arguments, is_checkpoint(arguments.scene.path));
+  if (auto ok = check(files); !ok) return ok;
+  warn_of_idle_options(command, arguments);
   if (is_checkpoint(arguments.scene.path)) {
     auto opened = Checkpoint::open(arguments.scene.path);
     if (!opened) return tl::unexpected(opened.error());
     checkpoint = std::move(*opened);
+    if (auto ok = check_with_scene(std::move(files), *checkpoint, arguments.scene_of_checkpoint);
+        !ok)
+      return ok;
   }
   Result<Scene> scene =
       checkpoint ? checkpoint->load_scene(arguments.scene_of_checkpoint) : load(arguments.scene);
@@ -143,27 +180,34 @@ void add_render(CLI::App& cli, int& status) {
   command
       .add_option("--path-trace", arguments->path_trace, "trace this many paths per pixel instead")
       ->type_name("SPP")
-      ->check(CLI::Range(1u, 1u << 24));
+      ->check(from_to(1u, 1u << 24));
   add_bounce_argument(command, arguments->solve.visibility);
   command
       .add_option("--samples", arguments->samples_per_pixel,
                   "camera rays per pixel of solved light")
-      ->check(CLI::Range(1, 1024))
+      ->check(from_to(1, 1024).description("1 to 1024"))
+      ->type_name("N")
       ->capture_default_str();
-  command
-      .add_option("--visibility-mask", arguments->visibility_output,
-                  "also write the visible share of the direct light of each pixel: .exr or .png")
-      ->type_name("FILE");
+  CLI::Option* mask =
+      command
+          .add_option(
+              "--visibility-mask", arguments->visibility_output,
+              "also write the visible share of the direct light of each pixel: .exr or .png")
+          ->check(file_name())
+          ->type_name("FILE");
   command.add_option("--mask-samples", arguments->visibility_samples, "light samples per pixel")
       ->type_name("N")
-      ->check(CLI::Range(1u, 1u << 24))
+      ->needs(mask)
+      ->check(from_to(1u, 1u << 24))
       ->capture_default_str();
   command.add_option("--seed", arguments->seed, "picks another set of samples")
+      ->check(any_number<std::uint64_t>())
+      ->type_name("N")
       ->capture_default_str();
   command.callback([arguments, &command, &status] {
     set_thread_count(arguments->solve.threads);
     Result<void> done = check_for_checkpoint(command, *arguments);
-    if (done) done = render(*arguments);
+    if (done) done = render(command, *arguments);
     status = done ? kGoalMet : fail(done.error());
   });
 }

@@ -7,9 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "command_files.h"
 #include "commands.h"
 #include "experiments/experiment.h"
 #include "experiments/report.h"
+#include "halflight/io/atomic_file.h"
 
 namespace halflight::app {
 namespace {
@@ -38,9 +40,23 @@ Result<std::vector<Experiment>> chosen(const std::vector<std::string>& names) {
   return list;
 }
 
+// The folder is made now: it is a matter of minutes until it is needed.
+Result<void> check_folder(const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure || !std::filesystem::is_directory(folder, failure))
+    return system_error(
+        "the folder cannot be made" + (failure ? ": " + failure.message() : std::string()),
+        folder.string(), "name another folder");
+  for (const char* name : {"report.html", "report.md", "numbers.json"})
+    if (auto ok = check_writable(folder / name); !ok) return ok;
+  return {};
+}
+
 Result<void> reproduce(const Arguments& arguments) {
   const auto list = chosen(arguments.names);
   if (!list) return tl::unexpected(list.error());
+  if (auto ok = check_folder(arguments.folder); !ok) return ok;
   const Progress progress;
   std::vector<experiments::Section> sections;
   for (const Experiment& experiment : *list) {
@@ -67,6 +83,7 @@ void add_reproduce(CLI::App& cli, int& status) {
   command
       ->add_option("-o,--output", arguments->folder,
                    "Folder for report.html, report.md and pictures")
+      ->check(file_name())
       ->required();
   command->footer("Experiments:" + known);
   command->callback([arguments, &status] {

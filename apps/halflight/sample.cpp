@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "halflight/base/parallel.h"
 #include "lit_output.h"
+#include "number_checks.h"
 #include "sensor_arguments.h"
 
 namespace halflight::app {
@@ -17,14 +18,20 @@ struct SampleArguments {
   int threads = 0;
 };
 
-Result<void> sample(const SampleArguments& arguments) {
+Result<void> sample(const CLI::App& command, const SampleArguments& arguments) {
   if (auto ok = check(arguments.lit); !ok) return ok;
+  CommandFiles files;
+  add_files(files, arguments.sensors);
+  add_files(files, arguments.lit);
+  add_files(files, arguments.checkpoint);
   if (arguments.sensors.points.empty() && arguments.lit.path.empty())
     return input_error("there is nothing to write", arguments.checkpoint.path.string(),
                        "give --points FILE or -o lit.glb");
+  if (auto ok = check(files); !ok) return ok;
   const auto sensors = read_sensors(arguments.sensors);
   if (!sensors) return tl::unexpected(sensors.error());
-  const Result<SolverState> state = restore(arguments.checkpoint);
+  warn_of_idle_sensors(command);
+  const Result<SolverState> state = restore(arguments.checkpoint, files);
   if (!state) return tl::unexpected(state.error());
   return write_readings(arguments.sensors, *sensors, arguments.lit, *state);
 }
@@ -38,12 +45,12 @@ void add_sample(CLI::App& cli, int& status) {
   add_sensor_arguments(command, arguments->sensors);
   add_lit_arguments(command, arguments->lit);
   command.add_option("--threads", arguments->threads, "0: all cores")
-      ->check(CLI::Range(0, 4096).description(""))
+      ->check(from_to(0, kMostThreads))
       ->type_name("N")
       ->capture_default_str();
-  command.callback([arguments, &status] {
+  command.callback([arguments, &command, &status] {
     set_thread_count(arguments->threads);
-    const Result<void> done = sample(*arguments);
+    const Result<void> done = sample(command, *arguments);
     status = done ? kGoalMet : fail(done.error());
   });
 }

@@ -4,9 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "command_files.h"
 #include "commands.h"
+#include "halflight/io/atomic_file.h"
 #include "halflight/io/write_gltf.h"
 #include "halflight/scene/procedural/catalogue.h"
+#include "number_checks.h"
 
 namespace halflight::app {
 namespace {
@@ -17,6 +20,7 @@ struct Request {
 };
 
 int write(const Request& request) {
+  if (auto ok = check_writable(request.output); !ok) return fail(ok.error());
   const Result<void> written = write_scene_glb(request.output, request.recipe.build());
   if (!written) return fail(written.error());
   std::fprintf(stderr, "halflight: wrote %s\n", request.output.c_str());
@@ -24,7 +28,10 @@ int write(const Request& request) {
 }
 
 CLI::Validator range_of(const Knob& knob) {
-  CLI::Range range(knob.least, knob.most);
+  const auto whole = [](double bound) { return static_cast<int>(bound); };
+  const bool counts = std::holds_alternative<int*>(knob.value);
+  CLI::Validator range =
+      counts ? from_to(whole(knob.least), whole(knob.most)) : from_to(knob.least, knob.most);
   return range.description(fmt::format("{:g} to {:g}", knob.least, knob.most));
 }
 
@@ -32,7 +39,9 @@ void add_recipe(CLI::App& scene, Recipe recipe, int& status) {
   const auto request = std::make_shared<Request>(Request{std::move(recipe), {}});
   request->output = request->recipe.name + ".glb";
   CLI::App* command = scene.add_subcommand(request->recipe.name, request->recipe.summary);
-  command->add_option("-o,--output", request->output, "GLB file to write")->capture_default_str();
+  command->add_option("-o,--output", request->output, "GLB file to write")
+      ->check(file_name())
+      ->capture_default_str();
   for (const Knob& knob : request->recipe.knobs) {
     const auto add = [&](auto* value) {
       command->add_option("--" + knob.name, *value, knob.meaning)

@@ -4,9 +4,9 @@
 
 #include "halflight/base/parallel.h"
 #include "halflight/base/quantities.h"
-#include "halflight/io/atomic_file.h"
 #include "halflight/output/read_light.h"
 #include "halflight/rays/sensor_placement.h"
+#include "idle_options.h"
 
 namespace halflight::app {
 namespace {
@@ -28,10 +28,12 @@ Result<int> resolve_gather_rays(const std::string& wish) {
 CLI::Option* add_sensor_arguments(CLI::App& command, SensorArguments& arguments) {
   CLI::Option* points =
       command.add_option("--points", arguments.points, "sensors: lines \"x y z nx ny nz\"")
+          ->check(file_name())
           ->type_name("FILE");
   command
       .add_option("--points-out", arguments.points_out,
                   "the sensors with \"Er Eg Eb\" added; standard output without it")
+      ->check(file_name())
       ->type_name("FILE")
       ->needs(points);
   command
@@ -43,11 +45,20 @@ CLI::Option* add_sensor_arguments(CLI::App& command, SensorArguments& arguments)
   return points;
 }
 
+void add_files(CommandFiles& files, const SensorArguments& arguments) {
+  files.reads("the sensors", arguments.points);
+  files.writes("--points-out", arguments.points_out);
+}
+
+void warn_of_idle_sensors(const CLI::App& command) {
+  if (command.get_option("--points")->count() == 0)
+    warn_of_idle(command, {"--final-gather"}, "without --points");
+}
+
 Result<std::vector<Sensor>> read_sensors(const SensorArguments& arguments) {
   if (const auto rays = resolve_gather_rays(arguments.final_gather); !rays)
     return tl::unexpected(rays.error());
   if (arguments.points.empty()) return std::vector<Sensor>();
-  if (auto ok = check_writable(arguments.points_out); !ok) return tl::unexpected(ok.error());
   return halflight::read_sensors(arguments.points);
 }
 

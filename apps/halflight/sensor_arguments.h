@@ -8,6 +8,7 @@
 
 #include <CLI/App.hpp>
 
+#include "command_files.h"
 #include "halflight/base/result.h"
 #include "halflight/io/sensors.h"
 #include "halflight/solve/solver.h"
@@ -23,8 +24,11 @@ struct SensorArguments {
 // Returns the option --points. `arguments` must live until the command has run.
 CLI::Option* add_sensor_arguments(CLI::App& command, SensorArguments& arguments);
 
-// None without --points. Errors: --final-gather is no number; what is wrong with the file,
-// or with the place to write to.
+void add_files(CommandFiles& files, const SensorArguments& arguments);
+// Tells of options that only matter where there are sensors.
+void warn_of_idle_sensors(const CLI::App& command);
+
+// None without --points. Errors: --final-gather is no number; what is wrong with the file.
 Result<std::vector<Sensor>> read_sensors(const SensorArguments& arguments);
 
 // Writes the irradiance at the sensors.

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "command_files.h"
 #include "commands.h"
 #include "halflight/base/parallel.h"
 #include "halflight/io/atomic_file.h"
@@ -41,14 +42,22 @@ struct SolveCommand {
   Outputs outputs;
 };
 
-void warn(const std::string& text) {
-  std::fputs(("halflight: warning: " + text + "\n").c_str(), stderr);
-}
-
 void warn_without_output(const Outputs& outputs) {
   if (outputs.lit.path.empty() && outputs.sensors.points.empty() && outputs.report.empty() &&
       outputs.checkpoint.empty())
     warn("nothing will be written (add -o lit.glb, --points, --report or --checkpoint)");
+}
+
+// A checkpoint that is gone on from is written to again.
+Result<void> check_files(const SolveCommand& command) {
+  CommandFiles files;
+  add_files(files, command.outputs.lit);
+  add_files(files, command.outputs.sensors);
+  files.writes("--report", command.outputs.report);
+  files.writes("--checkpoint", command.outputs.checkpoint);
+  add_files(files, command.solve);
+  files.reads_scene(command.scene.path);
+  return check(files);
 }
 
 // A resumed solve takes its groups from the checkpoint; others may not be asked for.
@@ -139,21 +148,22 @@ class Saver {
   bool cut_short_ = false;
 };
 
-Result<int> run(const SolveCommand& command) {
+Result<int> run(const CLI::App& sub, const SolveCommand& command) {
   Report report;
   const auto start = std::chrono::steady_clock::now();
   Result<SolvePlan> plan = resolve(command.solve);
   if (!plan) return tl::unexpected(plan.error());
   if (auto ok = check(command.outputs.lit); !ok) return tl::unexpected(ok.error());
-  const auto sensors = read_sensors(command.outputs.sensors);
-  if (!sensors) return tl::unexpected(sensors.error());
-  if (auto ok = check_writable(command.outputs.report); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_file_size(command.scene.path, plan->options.memory); !ok)
     return tl::unexpected(ok.error());
+  if (auto ok = check_files(command); !ok) return tl::unexpected(ok.error());
+  const auto sensors = read_sensors(command.outputs.sensors);
+  if (!sensors) return tl::unexpected(sensors.error());
   Result<Scene> scene = load(command.scene);
   if (!scene) return tl::unexpected(scene.error());
   print_warnings(*scene);
   warn_without_output(command.outputs);
+  warn_of_idle_sensors(sub);
   report.end_phase("load", start);
 
   auto phase = std::chrono::steady_clock::now();
@@ -227,10 +237,13 @@ void add_solve(CLI::App& cli, int& status) {
   add_solve_arguments(sub, command->solve);
   add_lit_arguments(sub, command->outputs.lit);
   add_sensor_arguments(sub, command->outputs.sensors);
-  sub.add_option("--report", command->outputs.report, "what was done, JSON")->type_name("FILE");
+  sub.add_option("--report", command->outputs.report, "what was done, JSON")
+      ->check(file_name())
+      ->type_name("FILE");
   CLI::Option* checkpoint =
       sub.add_option("--checkpoint", command->outputs.checkpoint,
                      "keep the solution here, to go on with --resume, for sample and for render")
+          ->check(file_name())
           ->type_name("FILE");
   sub.add_option("--light-groups", command->outputs.groups,
                  "take the light apart by who sends it, for mix: each material, light and the sky "
@@ -238,9 +251,9 @@ void add_solve(CLI::App& cli, int& status) {
       ->expected(0, 1)
       ->type_name("GROUPS");
   sub.add_flag("--resume", command->outputs.resume, "go on from the checkpoint")->needs(checkpoint);
-  sub.callback([command, &status] {
+  sub.callback([command, &sub, &status] {
     set_thread_count(command->solve.threads);
-    const Result<int> done = run(*command);
+    const Result<int> done = run(sub, *command);
     status = done ? *done : fail(done.error());
   });
 }

@@ -14,14 +14,13 @@
 #include "halflight/rays/automatic_view.h"
 #include "halflight/rays/path_tracer.h"
 #include "halflight/solve/settings.h"
+#include "number_checks.h"
 #include "terminal_progress.h"
 
 namespace halflight::app {
 namespace {
 
 constexpr double kLongestTime = 1e8;  // seconds; three years
-constexpr int kUsualWidth = 1280;     // of a view that asks for no size, pixels
-constexpr float kUsualAspect = 16.f / 9.f;
 
 }  // namespace
 
@@ -53,6 +52,7 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
   command
       .add_option("--feature-sizes", arguments.feature_sizes,
                   "feature sizes by material or node, see docs/command-line.md")
+      ->check(file_name())
       ->type_name("RULES.toml");
   std::map<std::string, HierarchyKind> hierarchies;
   for (const NamedHierarchy& h : kHierarchies) hierarchies.emplace(h.name, h.kind);
@@ -72,9 +72,16 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
       ->type_name("auto|json|none")
       ->capture_default_str();
   command.add_option("--threads", arguments.threads, "0: all cores")
-      ->check(CLI::Range(0, 4096).description(""))
+      ->check(from_to(0, kMostThreads))
       ->type_name("N")
       ->capture_default_str();
+}
+
+void add_files(CommandFiles& files, const SolveArguments& arguments) {
+  files.reads("the rules", arguments.feature_sizes);
+  files.reads_view("the view", arguments.importance);
+  if (const auto pixels = pixel_size_wish(arguments.visibility.feature_size); pixels && *pixels)
+    files.reads_view("the view", (*pixels)->camera);
 }
 
 Result<SolvePlan> resolve(const SolveArguments& arguments) {
@@ -127,11 +134,8 @@ Result<ViewOfInterest> view_of_interest(const std::string& wish, const World& wo
   const Result<View> view = choose_view(wish, world.scene, world.geometry,
                                         [&] { return automatic_view(PathTracer(world)); });
   if (!view) return tl::unexpected(view.error());
-  if (view->width > 0 && view->height > 0)
-    return ViewOfInterest{view->camera, view->width, view->height};
-  const float aspect = view->camera.aspect > 0.f ? view->camera.aspect : kUsualAspect;
-  return ViewOfInterest{view->camera, kUsualWidth,
-                        std::max(1, static_cast<int>(static_cast<float>(kUsualWidth) / aspect))};
+  const auto [width, height] = picture_size(*view);
+  return ViewOfInterest{view->camera, width, height};
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include <CLI/App.hpp>
 
+#include "command_files.h"
 #include "halflight/base/progress.h"
 #include "halflight/base/result.h"
 #include "halflight/solve/solver.h"
@@ -42,6 +43,8 @@ struct SolvePlan {
   SolveOptions options;
   SolveGoals goals;
 };
+// Rules, and views that are files.
+void add_files(CommandFiles& files, const SolveArguments& arguments);
 Result<SolvePlan> resolve(const SolveArguments& arguments);
 // Adds what needs the scene: views and rules.
 Result<void> complete(SolvePlan& plan, const SolveArguments& arguments, const World& world);

@@ -11,6 +11,7 @@
 #include "halflight/base/quantities.h"
 #include "halflight/view/view_routes.h"
 #include "interrupt.h"
+#include "number_checks.h"
 #include "scene_arguments.h"
 #include "solve_arguments.h"
 #include "view_page.h"
@@ -89,7 +90,7 @@ void add_view(CLI::App& cli, int& status) {
   add_scene_arguments(command, arguments->scene);
   add_solve_arguments(command, arguments->solve);
   command.add_option("--port", arguments->port, "of the page's address on 127.0.0.1; 0: any")
-      ->check(CLI::Range(0, kLargestPort).description(""))
+      ->check(from_to(0, kLargestPort))
       ->type_name("N")
       ->capture_default_str();
   command

@@ -1,23 +1,24 @@
 #include "view_arguments.h"
 
 #include <charconv>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include "halflight/io/atomic_file.h"
 #include "halflight/io/image_write.h"
 #include "halflight/output/choose_view.h"
 
 namespace halflight::app {
 namespace {
 
-constexpr int kDefaultWidth = 1280, kDefaultHeight = 720;
 constexpr int kLargestSide = 32768;
+constexpr std::int64_t kMostPixelsUnasked = 1 << 26;  // a gigabyte
 constexpr float kLargestEv = 60.f;
 
 ToneMap to_tone_map(const std::string& name) {
@@ -85,6 +86,7 @@ void add_view_arguments(CLI::App& command, ViewArguments& arguments) {
       ->default_str("agx");
   command
       .add_option("-o,--output", arguments.output, "picture to write: .png, or .exr for radiance")
+      ->check(file_name())
       ->type_name("FILE")
       ->required();
 }
@@ -93,8 +95,12 @@ Result<void> check(const ViewArguments& arguments) {
   if (!arguments.size.empty())
     if (const auto size = to_size(arguments.size); !size) return tl::unexpected(size.error());
   if (const auto ev = to_ev(arguments.exposure, Image()); !ev) return tl::unexpected(ev.error());
-  if (auto known = check_image_name(arguments.output); !known) return known;
-  return check_writable(arguments.output);
+  return check_image_name(arguments.output);
+}
+
+void add_files(CommandFiles& files, const ViewArguments& arguments) {
+  files.reads_view("the camera", arguments.camera);
+  files.writes("-o", arguments.output);
 }
 
 Result<View> choose_view(const ViewArguments& arguments, const Scene& scene,
@@ -105,12 +111,14 @@ Result<View> choose_view(const ViewArguments& arguments, const Scene& scene,
     const auto size = to_size(arguments.size);
     if (!size) return tl::unexpected(size.error());
     std::tie(view->width, view->height) = *size;
-  } else if (view->width == 0 || view->height == 0) {
-    view->width = kDefaultWidth;
-    const float aspect = view->camera.aspect;
-    const float height = aspect > 0.f ? kDefaultWidth / aspect : static_cast<float>(kDefaultHeight);
-    view->height = static_cast<int>(std::clamp(std::round(height), 1.f, float{kLargestSide}));
+    return view;
   }
+  std::tie(view->width, view->height) = picture_size(*view);
+  if (std::int64_t{view->width} * view->height > kMostPixelsUnasked)
+    return input_error(fmt::format("the camera asks for {} x {} pixels", view->width, view->height),
+                       arguments.camera,
+                       fmt::format("give --size {0}x{1} if so many are wanted, or fewer",
+                                   view->width, view->height));
   return view;
 }
 

@@ -7,6 +7,7 @@
 
 #include <CLI/App.hpp>
 
+#include "command_files.h"
 #include "halflight/base/image.h"
 #include "halflight/base/result.h"
 #include "halflight/io/camera_file.h"
@@ -27,6 +28,8 @@ void add_view_arguments(CLI::App& command, ViewArguments& arguments);
 
 // Complains about what can be known to be wrong before any work is done.
 Result<void> check(const ViewArguments& arguments);
+
+void add_files(CommandFiles& files, const ViewArguments& arguments);
 
 // The camera, and the size of the picture in pixels.
 Result<View> choose_view(const ViewArguments& arguments, const Scene& scene,

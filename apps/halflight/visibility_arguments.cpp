@@ -9,9 +9,13 @@
 #include "halflight/base/quantities.h"
 #include "halflight/hierarchy/surfaces.h"
 #include "halflight/visibility/multires_build.h"
+#include "idle_options.h"
 
 namespace halflight::app {
 namespace {
+
+// Squares of lengths in between are neither 0 nor infinite in single precision.
+constexpr double kShortest = 1e-15, kLongest = 1e15;  // metres
 
 Visibility make_visibility(const World& world, VisibilityMode mode) {
   const Surfaces surfaces = build_surfaces(world.geometry);
@@ -72,9 +76,28 @@ Result<float> resolve_feature_size(const VisibilityArguments& arguments) {
   if (*wish) return -1.f;
   const Result<double> length = parse_length(arguments.feature_size);
   if (!length) return tl::unexpected(length.error());
-  if (!(*length >= 0.0))
-    return input_error("--feature-size must not be negative", {}, "0 keeps all shadows exact");
+  if (*length > kLongest || (*length > 0.0 && *length < kShortest))
+    return input_error(fmt::format("--feature-size '{}' is not a length from {:g} m to {:g} m",
+                                   arguments.feature_size, kShortest, kLongest),
+                       {}, "write it like 5cm; 0 keeps all shadows exact");
   return static_cast<float>(*length);
+}
+
+Result<void> check_for_paths(const VisibilityArguments& arguments) {
+  if (const auto size = resolve_feature_size(arguments); !size) return tl::unexpected(size.error());
+  if (arguments.mode.value_or(VisibilityMode::exact) == VisibilityMode::exact) return {};
+  const auto pixels = pixel_size_wish(arguments.feature_size);
+  if (!pixels) return tl::unexpected(pixels.error());
+  if (!*pixels) return {};
+  return input_error(fmt::format("--feature-size '{}': paths have the same everywhere, not so many "
+                                 "pixels",
+                                 arguments.feature_size),
+                     {}, "give a length, like 5cm");
+}
+
+void warn_of_idle_visibility(const CLI::App& command, const VisibilityArguments& arguments) {
+  if (!arguments.mode)
+    warn_of_idle(command, {"--feature-size", "--bounces"}, "on paths without --visibility");
 }
 
 PathVisibility::PathVisibility(const World& world, VisibilityMode mode, float feature_size,

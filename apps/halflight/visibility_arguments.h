@@ -36,6 +36,12 @@ struct PixelSizeWish {
 };
 Result<std::optional<PixelSizeWish>> pixel_size_wish(const std::string& feature_size);
 
+// Complains about what can be known to be wrong for path tracers before any work is done: also
+// feature sizes in pixels, where they would matter.
+Result<void> check_for_paths(const VisibilityArguments& arguments);
+// Tells of options that only matter with --visibility.
+void warn_of_idle_visibility(const CLI::App& command, const VisibilityArguments& arguments);
+
 // What a path tracer asks instead of exact rays.
 class PathVisibility {
  public:

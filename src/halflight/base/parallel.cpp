@@ -41,8 +41,9 @@ void tell_sanitizer_after(void*) {}
 }  // namespace
 
 void set_thread_count(int n) {
+  constexpr int kMost = 1 << 16;  // more than any machine has
   const int all = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  g_thread_count = threads_within(n > 0 ? n : all);
+  g_thread_count = threads_within(n > 0 ? std::min(n, kMost) : all);
   const tbb::global_control* before = g_thread_limit;
   g_thread_limit = new tbb::global_control(tbb::global_control::max_allowed_parallelism,
                                            static_cast<std::size_t>(g_thread_count));

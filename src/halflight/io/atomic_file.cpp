@@ -1,6 +1,7 @@
 #include "halflight/io/atomic_file.h"
 
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -20,10 +21,16 @@ tl::unexpected<Error> cannot_write(const std::filesystem::path& path) {
                       "check that the folder exists, is writable and has room");
 }
 
+// Names that are nearly as long as they may be lose their end, between two characters of UTF-8.
 std::filesystem::path beside(const std::filesystem::path& path) {
-  std::filesystem::path name = path;
-  name += ".partial-" + std::to_string(::getpid());
-  return name;
+  const std::string ending = ".partial-" + std::to_string(::getpid());
+  std::string name = path.filename().string();
+  if (name.size() + ending.size() > NAME_MAX) {
+    std::size_t length = NAME_MAX - ending.size();
+    while (length > 0 && (static_cast<unsigned char>(name[length]) & 0xc0u) == 0x80u) --length;
+    name.resize(length);
+  }
+  return path.parent_path() / (name + ending);
 }
 
 bool write_all(std::FILE* f, std::span<const std::byte> bytes) {
@@ -32,11 +39,20 @@ bool write_all(std::FILE* f, std::span<const std::byte> bytes) {
 
 }  // namespace
 
+bool is_written_in_place(const std::filesystem::path& path) {
+  std::error_code unknown;
+  const auto status = std::filesystem::status(path, unknown);
+  if (std::filesystem::is_directory(status) || !std::filesystem::exists(status)) return false;
+  if (!std::filesystem::is_regular_file(status)) return true;
+  if (!std::filesystem::is_symlink(std::filesystem::symlink_status(path, unknown))) return false;
+  const auto folder = std::filesystem::canonical(path.parent_path(), unknown);
+  return folder == "/dev" || folder.string().starts_with("/proc/");
+}
+
 Result<void> write_file_atomically(const std::filesystem::path& path,
                                    std::span<const std::byte> bytes) {
   std::error_code ignored;
-  const auto status = std::filesystem::status(path, ignored);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+  if (is_written_in_place(path) || std::filesystem::is_directory(path, ignored)) {
     const File f(std::fopen(path.c_str(), "wb"));
     if (!f || !write_all(f.get(), bytes)) return cannot_write(path);
     return {};
@@ -58,13 +74,14 @@ Result<void> write_file_atomically(const std::filesystem::path& path,
 
 Result<void> check_writable(const std::filesystem::path& path) {
   if (path.empty()) return {};
-  std::error_code ignored;
-  const auto status = std::filesystem::status(path, ignored);
-  if (std::filesystem::is_directory(status)) {
-    errno = EISDIR;
+  if (is_written_in_place(path)) return {};
+  std::error_code failure, ignored;
+  const auto status = std::filesystem::status(path, failure);
+  const bool too_long = failure == std::errc::filename_too_long;
+  if (std::filesystem::is_directory(status) || too_long) {
+    errno = too_long ? ENAMETOOLONG : EISDIR;
     return cannot_write(path);
   }
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) return {};
   const std::filesystem::path partial = beside(path);
   if (!File(std::fopen(partial.c_str(), "wb"))) return cannot_write(path);
   std::filesystem::remove(partial, ignored);

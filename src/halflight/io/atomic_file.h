@@ -11,10 +11,14 @@
 namespace halflight {
 
 // Writes beside `path`, then renames over it: a reader sees the old bytes or all of the new ones,
-// also when the program is killed. Something that is no regular file (a pipe, /dev/stdout) is
+// also when the program is killed. What is_written_in_place is
 // written to as it is.
 Result<void> write_file_atomically(const std::filesystem::path& path,
                                    std::span<const std::byte> bytes);
+
+// Something that is no regular file and no folder: it may be written to several times. So may the
+// standard streams by their names in /dev and /proc, wherever they lead.
+bool is_written_in_place(const std::filesystem::path& path);
 
 // Tells before any work is done that a file could not be written; an empty path is no file.
 Result<void> check_writable(const std::filesystem::path& path);

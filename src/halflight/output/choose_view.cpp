@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,8 @@ namespace halflight {
 namespace {
 
 constexpr float kDefaultFov = 45.f;  // degrees
+// Pixels of pictures of views that ask for no size.
+constexpr int kUsualWidth = 1280, kUsualHeight = 720, kGreatestHeight = 4 * kUsualWidth;
 
 template <class Number>
 std::optional<Number> whole_number(std::string_view text) {
@@ -87,6 +90,13 @@ Result<View> choose_view(const std::string& wish, const Scene& scene, const Geom
     return input_error(fmt::format("the camera '{}' has no direction or no usable place", wish),
                        "--camera", "give its node a scale of 1, or another view");
   return view;
+}
+
+std::pair<int, int> picture_size(const View& view) {
+  if (view.width > 0 && view.height > 0) return {view.width, view.height};
+  if (!(view.camera.aspect > 0.f)) return {kUsualWidth, kUsualHeight};
+  const float height = std::round(static_cast<float>(kUsualWidth) / view.camera.aspect);
+  return {kUsualWidth, static_cast<int>(std::clamp(height, 1.f, float{kGreatestHeight}))};
 }
 
 }  // namespace halflight

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "halflight/base/result.h"
 #include "halflight/io/camera_file.h"
@@ -15,5 +16,9 @@ namespace halflight {
 // field of view in degrees), or "auto": the scene's first camera, else `automatic()`.
 Result<View> choose_view(const std::string& wish, const Scene& scene, const Geometry& geometry,
                          const std::function<PlacedCamera()>& automatic);
+
+// Pixels of a picture of the view, width and height: as many as it asks for, else 1280 by 720, or
+// by what the camera's aspect ratio makes of it, at most four times 1280.
+std::pair<int, int> picture_size(const View& view);
 
 }  // namespace halflight
