@@ -1,6 +1,6 @@
 #include "halflight/io/feature_size_rules.h"
 
-#include <algorithm>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -31,17 +31,22 @@ tl::unexpected<Error> wrong(const std::string& where, const toml::source_region&
 }
 
 // Rules need no dotted keys, and each dot nests the tables deeper, which end by recursion.
-constexpr std::ptrdiff_t kMostDots = 32;
+constexpr int kMostDots = 32;
 
+// Counted in quotes and comments too, as only a parser can tell them. Dots that nest have a key
+// between them, so a row of them counts as one.
 std::optional<std::size_t> line_of_too_many_dots(std::string_view text) {
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::string_view line = text.substr(0, text.find_first_of("\n\r"));
-    if (std::count(
-            line.begin(),
-            line.begin() + static_cast<std::ptrdiff_t>(std::min(line.find('#'), line.size())),
-            '.') > kMostDots)
-      return number;
-    text.remove_prefix(std::min(line.size() + 1, text.size()));
+  std::size_t line = 1;
+  int dots = 0;
+  char last = ' ';  // that is no space
+  for (const char c : text) {
+    if (c == '\n') {
+      ++line;
+      dots = 0;
+    } else if (c == '.' && last != '.' && ++dots > kMostDots) {
+      return line;
+    }
+    if (c != ' ' && c != '\t') last = c;
   }
   return std::nullopt;
 }
@@ -53,7 +58,7 @@ Result<float> to_feature_size(const toml::node& value) {
     return static_cast<float>(*length);
   }
   const auto metres = value.value<double>();
-  if (!metres || !std::isfinite(*metres) || *metres < 0.0)
+  if (!metres || !(*metres >= 0.0 && *metres <= double{std::numeric_limits<float>::max()}))
     return input_error("feature-size is not a length", {}, kRemedy);
   return static_cast<float>(*metres);
 }
