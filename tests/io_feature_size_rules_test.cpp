@@ -68,6 +68,23 @@ TEST_F(FeatureSizeRules, DeepKeysAreRefused) {
            std::string(100, '.') + "\nmaterial = \"Wood.001\"\nfeature-size = 0.5\n"));
 }
 
+TEST_F(FeatureSizeRules, TooLongOrTooManyAreRefused) {
+  const auto rule = [](std::size_t letters) {
+    return "[[rule]]\nnode = \"" + std::string(letters, 'a') + "\"\nfeature-size = 0.5\n";
+  };
+  EXPECT_TRUE(read(rule(kLongestRuleName)));
+  const auto longer = read(rule(kLongestRuleName + 1));
+  ASSERT_FALSE(longer);
+  EXPECT_NE(longer.error().what.find("node is longer than 255 bytes, line 2"), std::string::npos);
+  std::string many;
+  for (std::size_t i = 0; i < kMostRules; ++i) many += rule(1);
+  EXPECT_TRUE(read(many));
+  const auto more = read(many + rule(1));
+  ASSERT_FALSE(more);
+  EXPECT_NE(more.error().what.find("more than 1024 rules, line 3073"), std::string::npos)
+      << more.error().line();
+}
+
 TEST_F(FeatureSizeRules, MissingFileIsAnError) {
   EXPECT_FALSE(read_feature_size_rules(folder_.path() / "none.toml"));
 }

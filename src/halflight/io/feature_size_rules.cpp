@@ -71,6 +71,10 @@ Result<FeatureSizeRule> to_rule(const std::string& where, const toml::table& tab
       const auto name = value.value_exact<std::string>();
       if (!name || name->empty())
         return wrong(where, value.source(), fmt::format("{} is not a name", key.str()));
+      if (name->size() > kLongestRuleName)
+        return input_error(fmt::format("{} is longer than {} bytes, line {}", key.str(),
+                                       kLongestRuleName, value.source().begin.line),
+                           where, "put a * for a part of it");
       (key == "material" ? rule.material : rule.node) = *name;
     } else if (key == "feature-size") {
       const Result<float> size = to_feature_size(value);
@@ -107,6 +111,10 @@ Result<std::vector<FeatureSizeRule>> parse_feature_size_rules(std::string_view t
     if (key != "rule" || !list)
       return wrong(where, value.source(), fmt::format("unknown key '{}'", key.str()));
     for (const toml::node& node : *list) {
+      if (rules.size() == kMostRules)
+        return input_error(fmt::format("there are more than {} rules, line {}", kMostRules,
+                                       node.source().begin.line),
+                           where, "let one rule speak for several names, with a *");
       if (!node.is_table()) return wrong(where, node.source(), "a rule is not a table");
       Result<FeatureSizeRule> rule = to_rule(where, *node.as_table());
       if (!rule) return tl::unexpected(rule.error());
