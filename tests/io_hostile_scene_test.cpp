@@ -110,6 +110,32 @@ TEST(HostileScene, PicturesOutsideTheirBufferAreRefused) {
   EXPECT_THAT(refusal(folder, gltf.glb()), HasSubstr("bufferViews/1"));
 }
 
+// Seconds that it takes to read an OBJ file.
+double seconds_to_read(const TemporaryFolder& folder, const std::string& obj) {
+  const auto path = folder.write("slow.obj", obj);
+  const auto begin = std::chrono::steady_clock::now();
+  expect_one_line(load_scene(path));
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+constexpr const char* kCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+TEST(HostileScene, SpacesAtTheEndOfALineAreSkippedOnce) {
+  const TemporaryFolder folder;
+  EXPECT_LT(seconds_to_read(
+                folder, kCorners + ("f " + repeated("1 ", 100'000)) + std::string(300'000, ' ')),
+            3.0);
+  folder.write("m.mtl",
+               "newmtl a\nmap_Kd " + repeated("-x a ", 60'000) + std::string(300'000, ' '));
+  EXPECT_LT(seconds_to_read(folder, "mtllib m.mtl\n"), 3.0);
+}
+
 TEST(HostileScene, DevicesAndFoldersAreNotScenes) {
   const TemporaryFolder folder;
   GltfBuilder gltf;
