@@ -1,8 +1,11 @@
 // Files made to break the reader: it must answer with a scene or one line, soon and in little
 // memory.
 #include <chrono>
+#include <cmath>
 #include <random>
+#include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -134,6 +137,28 @@ TEST(HostileScene, SpacesAtTheEndOfALineAreSkippedOnce) {
   folder.write("m.mtl",
                "newmtl a\nmap_Kd " + repeated("-x a ", 60'000) + std::string(300'000, ' '));
   EXPECT_LT(seconds_to_read(folder, "mtllib m.mtl\n"), 3.0);
+}
+
+TEST(HostileScene, HoursOfCuttingFacesAreRefused) {
+  const TemporaryFolder folder;
+  const std::string face = "f " + repeated("1 2 3 ", 4095 / 3) + "1\n";
+  const auto scene = load_scene(folder.write("slow.obj", kCorners + repeated(face, 65)));
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error().line(), HasSubstr("slow.obj:68: too many faces"));
+}
+
+// As many discs as a large drawing has.
+TEST(HostileScene, ThousandsOfRoundFacesAreRead) {
+  const TemporaryFolder folder;
+  std::string disc, face = "f";
+  for (int i = 0; i < 200; ++i) {
+    const double angle = 2.0 * static_cast<double>(kPi) * i / 200.0;
+    disc += fmt::format("v {} {} 0\n", std::cos(angle), std::sin(angle));
+    face += fmt::format(" {}", i + 1);
+  }
+  const auto scene = load_scene(folder.write("discs.obj", disc + repeated(face + "\n", 5000)));
+  ASSERT_TRUE(scene) << scene.error().line();
+  EXPECT_EQ(flatten(*scene).triangles.size(), 5000u * 198u);
 }
 
 TEST(HostileScene, DevicesAndFoldersAreNotScenes) {

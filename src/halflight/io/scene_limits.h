@@ -31,6 +31,8 @@ inline constexpr std::size_t kMaxSceneTexels = std::size_t{1} << (30 - kFewer);
 inline constexpr std::size_t kMaxTexels = std::size_t{1} << (27 - kFewer);
 // The same of a picture of floats (0.8 GB).
 inline constexpr std::int64_t kMaxFloatPixels = std::int64_t{1} << (26 - kFewer);
+// Squares of the corners of large faces of OBJ files: seconds of cutting them into triangles.
+inline constexpr std::size_t kMaxCuttingEffort = std::size_t{1} << (30 - kFewer);
 
 // Counts what has been asked for and fails when it passes the limit.
 class ReadBudget {
