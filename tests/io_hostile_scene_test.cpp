@@ -161,6 +161,26 @@ TEST(HostileScene, ThousandsOfRoundFacesAreRead) {
   EXPECT_EQ(flatten(*scene).triangles.size(), 5000u * 198u);
 }
 
+TEST(HostileScene, NamesOfGroupsTakeLittleMemory) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& obj) {
+    const auto scene = load_scene(folder.write("named.obj", kCorners + obj));
+    return scene ? "" : scene.error().line();
+  };
+  const std::string name(1024, 'a');
+  for (const char* key : {"o ", "g ", "usemtl "}) {
+    EXPECT_EQ(refused(key + name + "\nf 1 2 3\n"), "");
+    EXPECT_THAT(refused(fmt::format("\n{}{}a\nf 1 2 3\n", key, name)),
+                HasSubstr("named.obj:5: a name is longer than 1024 bytes"));
+  }
+  folder.write("m.mtl", "\nnewmtl " + name + "a\n");
+  EXPECT_THAT(refused("mtllib m.mtl\n"), HasSubstr("m.mtl:2: a name is longer than"));
+  // Each of the groups would repeat the name of the object.
+  std::string groups = "o " + name + "\n";
+  for (int i = 0; i < 140'000; ++i) groups += fmt::format("g {}\nf 1 2 3\n", i);
+  EXPECT_THAT(refused(groups), HasSubstr("bytes of names"));
+}
+
 TEST(HostileScene, DevicesAndFoldersAreNotScenes) {
   const TemporaryFolder folder;
   GltfBuilder gltf;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "halflight/io/scene_limits.h"
 #include "halflight/io/text_lines.h"
 #include "halflight/scene/radiance.h"
 
@@ -117,9 +118,10 @@ void ObjMaterials::read_library(Bytes text, const std::filesystem::path& path) {
     const std::string_view key = words.word();
     if (key == "newmtl") {
       finish();
+      const std::string_view name = checked_name(words.rest(), path, lines.number());
       current = scene_.materials.push_back({});
-      scene_.materials[current].name = words.rest();
-      by_name_.emplace(words.rest(), current);
+      scene_.materials[current].name = name;
+      by_name_.emplace(name, current);
     } else if (current.valid()) {
       if (!read_numbers(key, words, draft))
         warnings_.add(path.string() + ":" + std::to_string(lines.number()) + ": '" +

@@ -65,9 +65,9 @@ class ObjReader {
     else if (key == "p" || key == "l")
       points_and_lines_.add(number);
     else if (key == "o" || key == "g")
-      start_group(key == "o", words.rest());
+      start_group(key == "o", checked_name(words.rest(), path_, number));
     else if (key == "usemtl")
-      start_material(words.rest());
+      start_material(checked_name(words.rest(), path_, number));
     else if (key == "mtllib")
       read_libraries(words.rest());
   }
@@ -191,7 +191,7 @@ class ObjReader {
   ReadWarnings warnings_;
   ObjMaterials materials_;
   ObjVertexData data_;
-  ObjMeshes meshes_;
+  ObjMeshes meshes_{path_.string()};
   ReadBudget triangles_{"triangles", kMaxTriangles};
   std::size_t effort_ = 0;  // of cutting faces
 

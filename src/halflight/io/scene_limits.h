@@ -4,7 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "halflight/io/read_failure.h"
 
@@ -33,6 +36,10 @@ inline constexpr std::size_t kMaxTexels = std::size_t{1} << (27 - kFewer);
 inline constexpr std::int64_t kMaxFloatPixels = std::int64_t{1} << (26 - kFewer);
 // Squares of the corners of large faces of OBJ files: seconds of cutting them into triangles.
 inline constexpr std::size_t kMaxCuttingEffort = std::size_t{1} << (30 - kFewer);
+// Of an object, a group or a material in OBJ and MTL files, bytes.
+inline constexpr std::size_t kLongestName = 1024;
+// Of all groups together: each holds the name of its object, too.
+inline constexpr std::size_t kMaxNameBytes = std::size_t{1} << (27 - kFewer);
 
 // Counts what has been asked for and fails when it passes the limit.
 class ReadBudget {
@@ -51,5 +58,13 @@ class ReadBudget {
   std::size_t limit_;
   std::size_t used_ = 0;
 };
+
+inline std::string_view checked_name(std::string_view name, const std::filesystem::path& file,
+                                     std::size_t line) {
+  if (name.size() > kLongestName)
+    fail_reading("a name is longer than " + std::to_string(kLongestName) + " bytes",
+                 file.string() + ":" + std::to_string(line), "shorten it");
+  return name;
+}
 
 }  // namespace halflight
