@@ -181,6 +181,20 @@ TEST(HostileScene, NamesOfGroupsTakeLittleMemory) {
   EXPECT_THAT(refused(groups), HasSubstr("bytes of names"));
 }
 
+TEST(HostileScene, MaterialLibrariesAreReadOnce) {
+  const TemporaryFolder folder;
+  folder.write("m.mtl", repeated("newmtl a\n", 1000));
+  const auto scene = load_scene(folder.write(
+      "libraries.obj", "mtllib " + repeated("m.mtl ./m.mtl ", 100) + "\nmtllib m.mtl\n"));
+  ASSERT_TRUE(scene) << scene.error().line();
+  EXPECT_EQ(scene->materials.size(), 1000u);
+  std::string all = "mtllib";
+  for (int i = 0; i < 1025; ++i) all += fmt::format(" {}.mtl", i);
+  const auto many = load_scene(folder.write("libraries.obj", all));
+  ASSERT_FALSE(many);
+  EXPECT_THAT(many.error().line(), HasSubstr("more than 1024 material libraries"));
+}
+
 TEST(HostileScene, DevicesAndFoldersAreNotScenes) {
   const TemporaryFolder folder;
   GltfBuilder gltf;

@@ -97,6 +97,12 @@ bool read_numbers(std::string_view key, LineWords words, Draft& draft) {
 }  // namespace
 
 void ObjMaterials::read_library(const std::filesystem::path& path) {
+  std::error_code unknown;
+  const auto file = std::filesystem::weakly_canonical(path, unknown);
+  if (!libraries_.insert(unknown ? path : file).second) return;
+  if (libraries_.size() > kMaxLibraries)
+    fail_reading("there are more than " + std::to_string(kMaxLibraries) + " material libraries",
+                 path.string(), "put their materials into one file");
   Result<Bytes> text = read_file(path);
   if (!text) {
     warnings_.add(text.error().line() + "; materials without it have reflectance 0.5");

@@ -36,6 +36,8 @@ inline constexpr std::size_t kMaxTexels = std::size_t{1} << (27 - kFewer);
 inline constexpr std::int64_t kMaxFloatPixels = std::int64_t{1} << (26 - kFewer);
 // Squares of the corners of large faces of OBJ files: seconds of cutting them into triangles.
 inline constexpr std::size_t kMaxCuttingEffort = std::size_t{1} << (30 - kFewer);
+// Material libraries that an OBJ file names, there or not.
+inline constexpr std::size_t kMaxLibraries = 1024;
 // Of an object, a group or a material in OBJ and MTL files, bytes.
 inline constexpr std::size_t kLongestName = 1024;
 // Of all groups together: each holds the name of its object, too.
