@@ -1,6 +1,7 @@
 #include "halflight/io/obj_materials.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "halflight/io/scene_limits.h"
@@ -48,6 +49,9 @@ MapOptions read_map_options(std::string_view arguments) {
   std::replace(options.file.begin(), options.file.end(), '\\', '/');
   return options;
 }
+
+// Repetitions of a picture: far beyond, sums of scale and offset are no numbers.
+constexpr float kFarthestMap = 1e6f;
 
 // A colour of one (grey) or three numbers.
 std::optional<Rgb> read_colour(LineWords words) {
@@ -187,6 +191,10 @@ TextureRef ObjMaterials::read_map(std::string_view arguments, const std::filesys
   // OBJ: u' = s u + o with v from the bottom; v is flipped before and after.
   const auto& s = options.scale;
   const auto& o = options.offset;
+  if (std::max({std::abs(s[0]), std::abs(s[1]), std::abs(o[0]), std::abs(o[1])}) > kFarthestMap) {
+    warnings_.add(options.file + " is scaled or moved by more than a million; that is ignored");
+    return ref;
+  }
   ref.uv_transform = {s[0], 0.f, o[0], 0.f, s[1], 1.f - s[1] - o[1]};
   return ref;
 }
