@@ -152,6 +152,19 @@ TEST_F(CheckpointCommand, MixDimsAndRecolours) {
   EXPECT_THAT(one_line_error("mix d --group lamp=1"), HasSubstr("no light groups"));
 }
 
+TEST_F(CheckpointCommand, MoreLightGroupsThanCanBeKeptApartAreRefused) {
+  std::string materials, faces = "mtllib lamps.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i < 257; ++i) {
+    materials += fmt::format("newmtl lamp{}\nKe 1\n", i);
+    faces += fmt::format("usemtl lamp{}\nf 1 2 3\n", i);
+  }
+  folder_.write("lamps.mtl", materials);
+  folder_.write("lamps.obj", faces);
+  EXPECT_THAT(one_line_error("solve lamps.obj --progress none --checkpoint c --light-groups"),
+              HasSubstr("257 groups of lights, and at most 256"));
+  EXPECT_FALSE(fs::exists(path("c")));
+}
+
 TEST_F(CheckpointCommand, SaysWhyItCannotGoOn) {
   const std::string common = "solve room.obj --progress none --points sensors.txt --checkpoint c";
   ASSERT_EQ(run(common + " --feature-size 50cm"), 0);

@@ -20,7 +20,8 @@ TEST(Quantities, DurationsAreSecondsAndPercentagesShares) {
 }
 
 TEST(Quantities, NonsenseIsNamedInTheError) {
-  for (const char* bad : {"", "cm", "-5cm", "5 cm", "nan", "inf", "5furlong", "1e999"}) {
+  for (const char* bad :
+       {"", "cm", "-5cm", "5 cm", "nan", "inf", "5furlong", "1e999", "1e39", "1e39m"}) {
     const auto length = parse_length(bad);
     ASSERT_FALSE(length) << bad;
     EXPECT_NE(length.error().line().find(bad), std::string::npos);

@@ -36,6 +36,8 @@ TEST_F(FeatureSizeRules, NonsenseIsNamedWithItsLine) {
            {"[[rule]]\nmaterial = \"a\"\nfeature-size = \"2 furlongs\"\n", "line 3"},
            {"[[rule]]\nmaterial = \"a\"\nfeature-size = -1\n", "line 3"},
            {"[[rule]]\nmaterial = \"a\"\nfeature-size = nan\n", "line 3"},
+           {"[[rule]]\nmaterial = \"a\"\nfeature-size = 1e300\n", "line 3"},
+           {"[[rule]]\nmaterial = \"a\"\nfeature-size = \"1e39m\"\n", "line 3"},
            {"[[rule]]\nmaterial = 4\nfeature-size = 1\n", "line 2"},
            {"[[rule]]\nmaterail = \"a\"\nfeature-size = 1\n", "materail"},
            {"[[rule\n", "line 1"},
@@ -53,13 +55,34 @@ TEST_F(FeatureSizeRules, NonsenseIsNamedWithItsLine) {
 TEST_F(FeatureSizeRules, DeepKeysAreRefused) {
   std::string key = "a";
   for (int i = 0; i < 300'000; ++i) key += ".a";
-  for (const std::string& text : {key + " = 1\n", "\n[" + key + "]\n", "x = {" + key + " = 1}\n"}) {
+  for (const std::string& text :
+       {key + " = 1\n", "\n[" + key + "]\n", "x = {" + key + " = 1}\n", "\"#\"." + key + " = 1\n",
+        "['#'." + key + "]\n", "x = {y = \"\"\"\n# \"\"\", " + key + " = 1}\n"}) {
     const auto rules = read(text);
     ASSERT_FALSE(rules);
     EXPECT_NE(rules.error().what.find("too many dots"), std::string::npos) << rules.error().line();
   }
-  EXPECT_TRUE(read("[[rule]] # " + std::string(100, '.') +
-                   "\nmaterial = \"Wood.001\"\nfeature-size = 0.5\n"));
+  EXPECT_TRUE(
+      read("# . . . . . . . . . . . . . . . . . . . . . . . . . . . . . . . . . . . . .\n"
+           "[[rule]] # " +
+           std::string(100, '.') + "\nmaterial = \"Wood.001\"\nfeature-size = 0.5\n"));
+}
+
+TEST_F(FeatureSizeRules, TooLongOrTooManyAreRefused) {
+  const auto rule = [](std::size_t letters) {
+    return "[[rule]]\nnode = \"" + std::string(letters, 'a') + "\"\nfeature-size = 0.5\n";
+  };
+  EXPECT_TRUE(read(rule(kLongestRuleName)));
+  const auto longer = read(rule(kLongestRuleName + 1));
+  ASSERT_FALSE(longer);
+  EXPECT_NE(longer.error().what.find("node is longer than 255 bytes, line 2"), std::string::npos);
+  std::string many;
+  for (std::size_t i = 0; i < kMostRules; ++i) many += rule(1);
+  EXPECT_TRUE(read(many));
+  const auto more = read(many + rule(1));
+  ASSERT_FALSE(more);
+  EXPECT_NE(more.error().what.find("more than 1024 rules, line 3073"), std::string::npos)
+      << more.error().line();
 }
 
 TEST_F(FeatureSizeRules, MissingFileIsAnError) {

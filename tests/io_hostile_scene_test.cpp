@@ -1,8 +1,11 @@
 // Files made to break the reader: it must answer with a scene or one line, soon and in little
 // memory.
 #include <chrono>
+#include <cmath>
 #include <random>
+#include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -163,6 +166,88 @@ TEST(HostileScene, PicturesOutsideTheirBufferAreRefused) {
   gltf.json["images"] = {{{"bufferView", 1}, {"mimeType", "image/png"}}};
   gltf.add("bufferViews", {{"buffer", 0}, {"byteOffset", 1000000000}, {"byteLength", 100}});
   EXPECT_THAT(refusal(folder, gltf.glb()), HasSubstr("bufferViews/1"));
+}
+
+// Seconds that it takes to read an OBJ file.
+double seconds_to_read(const TemporaryFolder& folder, const std::string& obj) {
+  const auto path = folder.write("slow.obj", obj);
+  const auto begin = std::chrono::steady_clock::now();
+  expect_one_line(load_scene(path));
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+constexpr const char* kCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+TEST(HostileScene, SpacesAtTheEndOfALineAreSkippedOnce) {
+  const TemporaryFolder folder;
+  EXPECT_LT(seconds_to_read(
+                folder, kCorners + ("f " + repeated("1 ", 100'000)) + std::string(300'000, ' ')),
+            3.0);
+  folder.write("m.mtl",
+               "newmtl a\nmap_Kd " + repeated("-x a ", 60'000) + std::string(300'000, ' '));
+  EXPECT_LT(seconds_to_read(folder, "mtllib m.mtl\n"), 3.0);
+}
+
+TEST(HostileScene, HoursOfCuttingFacesAreRefused) {
+  const TemporaryFolder folder;
+  const std::string face = "f " + repeated("1 2 3 ", 4095 / 3) + "1\n";
+  const auto scene = load_scene(folder.write("slow.obj", kCorners + repeated(face, 65)));
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error().line(), HasSubstr("slow.obj:68: too many faces"));
+}
+
+// As many discs as a large drawing has.
+TEST(HostileScene, ThousandsOfRoundFacesAreRead) {
+  const TemporaryFolder folder;
+  std::string disc, face = "f";
+  for (int i = 0; i < 200; ++i) {
+    const double angle = 2.0 * static_cast<double>(kPi) * i / 200.0;
+    disc += fmt::format("v {} {} 0\n", std::cos(angle), std::sin(angle));
+    face += fmt::format(" {}", i + 1);
+  }
+  const auto scene = load_scene(folder.write("discs.obj", disc + repeated(face + "\n", 5000)));
+  ASSERT_TRUE(scene) << scene.error().line();
+  EXPECT_EQ(flatten(*scene).triangles.size(), 5000u * 198u);
+}
+
+TEST(HostileScene, NamesOfGroupsTakeLittleMemory) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& obj) {
+    const auto scene = load_scene(folder.write("named.obj", kCorners + obj));
+    return scene ? "" : scene.error().line();
+  };
+  const std::string name(4096, 'a');
+  for (const char* key : {"o ", "g ", "usemtl "}) {
+    EXPECT_EQ(refused(key + name + "\nf 1 2 3\n"), "");
+    EXPECT_THAT(refused(fmt::format("\n{}{}a\nf 1 2 3\n", key, name)),
+                HasSubstr("named.obj:5: a name is longer than 4096 bytes"));
+  }
+  folder.write("m.mtl", "\nnewmtl " + name + "a\n");
+  EXPECT_THAT(refused("mtllib m.mtl\n"), HasSubstr("m.mtl:2: a name is longer than"));
+  // Each of the groups would repeat the name of the object.
+  std::string groups = "o " + name + "\n";
+  for (int i = 0; i < 140'000; ++i) groups += fmt::format("g {}\nf 1 2 3\n", i);
+  EXPECT_THAT(refused(groups), HasSubstr("bytes of names"));
+}
+
+TEST(HostileScene, MaterialLibrariesAreReadOnce) {
+  const TemporaryFolder folder;
+  folder.write("m.mtl", repeated("newmtl a\n", 1000));
+  const auto scene = load_scene(folder.write(
+      "libraries.obj", "mtllib " + repeated("m.mtl ./m.mtl ", 100) + "\nmtllib m.mtl\n"));
+  ASSERT_TRUE(scene) << scene.error().line();
+  EXPECT_EQ(scene->materials.size(), 1000u);
+  std::string all = "mtllib";
+  for (int i = 0; i < 1025; ++i) all += fmt::format(" {}.mtl", i);
+  const auto many = load_scene(folder.write("libraries.obj", all));
+  ASSERT_FALSE(many);
+  EXPECT_THAT(many.error().line(), HasSubstr("more than 1024 material libraries"));
 }
 
 TEST(HostileScene, DevicesAndFoldersAreNotScenes) {

@@ -79,6 +79,18 @@ TEST(Obj, TextureCoordinatesCountFromTheBottomOfThePicture) {
             1e-5f);
 }
 
+TEST(Obj, PicturesMovedBeyondAllNumbersStayWhereTheyAre) {
+  const TemporaryFolder folder;
+  folder.write("red.tga", tga({{0, 0, 255, 255}}));
+  for (const char* map : {"-s 1 3e38 -o 0 3e38", "-o -2e6", "-s 2e6"}) {
+    folder.write("m.mtl", fmt::format("newmtl a\nmap_Kd {} red.tga\n", map));
+    const Scene scene = load(folder, kTopOfPicture);
+    EXPECT_EQ(scene.materials.raw()[0].reflectance_texture.uv_transform, TextureRef().uv_transform);
+    EXPECT_TRUE(scene.materials.raw()[0].reflectance_texture.valid());
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("red.tga is scaled or moved")));
+  }
+}
+
 TEST(Obj, OpacityMapsAreGreyOrTheAlphaOfAPicture) {
   const TemporaryFolder folder;
   folder.write("m.mtl", "newmtl a\nmap_d mask.tga\n");

@@ -318,6 +318,7 @@ TEST(Settings, OfPartsAndViewsAreTheSameAfterBeingText) {
   };
   EXPECT_FALSE(parse_settings(with("0.019999", "-0.019999")));  // a rule's size
   EXPECT_FALSE(parse_settings(with("\"Floor*\"", "7")));
+  EXPECT_FALSE(parse_settings(with("Floor*", std::string(kLongestRuleName + 1, 'a'))));
   EXPECT_FALSE(parse_settings(with("12.0", "0")));
   EXPECT_FALSE(parse_settings(with("-2.5", "1e99")));  // more than a float holds
   EXPECT_FALSE(parse_settings(with("-2.5", "true")));

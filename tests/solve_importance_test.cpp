@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <string>
 
 #include "halflight/rays/path_tracer.h"
@@ -102,6 +103,41 @@ TEST(FeatureSizes, RulesOfManyStarsAreAnsweredAtOnce) {
   EXPECT_TRUE(check_rules({{stars, "", 0.1f}}, *world, "rules.toml"));
   EXPECT_TRUE(check_rules({{stars + "***", "", 0.1f}}, *world, "rules.toml"));
   EXPECT_FALSE(check_rules({{stars + "*b", "", 0.1f}}, *world, "rules.toml"));
+}
+
+// Once per material and node; not per triangle, nor anew for each node above it.
+TEST(FeatureSizes, RulesForLongNamesAndDeepNodesAreAnsweredSoon) {
+  Scene scene = doorway_scene();
+  for (Material& m : scene.materials) m.name = std::string(100'000, 'a');
+  Node node;
+  node.name = "chain";
+  for (int i = 0; i < 20'000; ++i) node.parent = scene.nodes.push_back(node);
+  node.mesh = scene.nodes[NodeId(0)].mesh;
+  for (int i = 0; i < 20; ++i) scene.nodes.push_back(node);
+  node.name = "last";
+  scene.nodes.push_back(node);
+  const auto world = make_world(std::move(scene));
+  const std::string letters(250, 'a');
+  std::vector<FeatureSizeRule> rules(500, {"", "last", 0.1f});
+  rules.push_back({"*" + letters + "*", "", 0.1f});
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_TRUE(check_rules(rules, *world, "rules.toml"));
+  rules.push_back({"*" + letters + "b*", "", 0.1f});
+  EXPECT_FALSE(check_rules(rules, *world, "rules.toml"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
+}
+
+TEST(FeatureSizes, StarsStandForAnyLetters) {
+  Scene scene = doorway_scene();
+  for (Material& m : scene.materials) m.name = "Floor.tiles\xc3\xa9";
+  const auto world = make_world(std::move(scene));
+  for (const char* pattern :
+       {"*", "**", "Floor*", "*tiles\xc3\xa9", "F*.*\xa9", "Floor.tiles\xc3\xa9",
+        "*Floor.tiles\xc3\xa9*", "*o*o*", "F*l*o*o*r*", "*s\xc3*"})
+    EXPECT_TRUE(check_rules({{pattern, "", 0.1f}}, *world, "")) << pattern;
+  for (const char* pattern :
+       {"Floor", "loor*", "floor*", "*tile", "*oo*oo*", "*x*", "Floor.tiles\xc3\xa9?*a"})
+    EXPECT_FALSE(check_rules({{pattern, "", 0.1f}}, *world, "")) << pattern;
 }
 
 TEST(FeatureSizes, PixelsGrowWithDistance) {

@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <string>
 
 #include "halflight/output/estimated_error.h"
 #include "halflight/scene/light_groups.h"
@@ -141,6 +143,27 @@ TEST(LightGroups, DimGroupsAreRefinedAsWell) {
     return count;
   };
   EXPECT_GT(cells_on_the_floor_below(apart), 2 * cells_on_the_floor_below(together));
+}
+
+TEST(LightGroups, OfManyNamesAreFoundSoon) {
+  testing::QuadScene quads;
+  const MaterialId lamp = quads.material(0.5f);
+  quads.scene.materials[lamp].emission = Rgb(1.f);
+  quads.quad(Vec3(0.f), Vec3(0.f, 0.f, 1.f), Vec3(1.f, 0.f, 0.f), lamp);
+  Material material = quads.scene.materials[lamp];
+  Primitive primitive = quads.scene.meshes.back().primitives.front();
+  constexpr std::size_t kMany = 60'000;
+  for (std::size_t i = 0; i < kMany; ++i) {
+    material.name = "lamp " + std::to_string(i);
+    primitive.material = quads.scene.materials.push_back(material);
+    quads.scene.meshes.back().primitives.push_back(primitive);
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const auto groups = find_light_groups(quads.scene);
+  ASSERT_TRUE(groups);
+  EXPECT_EQ(groups->size(), kMany + 1);
+  EXPECT_EQ(groups->back().name, "lamp 59999");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
 }
 
 TEST(LightGroups, AreFoundByName) {

@@ -60,12 +60,25 @@ Result<void> check_files(const SolveCommand& command) {
   return check(files);
 }
 
+// The light of each is kept, 24 bytes an element, and found by sweeps of its own.
+constexpr std::size_t kMostLightGroups = 256;
+
+Result<std::vector<LightGroup>> asked_groups(const Scene& scene, const std::string& together) {
+  auto groups = find_light_groups(scene, together);
+  if (groups && groups->size() > kMostLightGroups)
+    return input_error(
+        fmt::format("there are {} groups of lights, and at most {} can be kept apart",
+                    groups->size(), kMostLightGroups),
+        "--light-groups", "put several together, as \"ceiling=LampA,LampB\"");
+  return groups;
+}
+
 // A resumed solve takes its groups from the checkpoint; others may not be asked for.
 Result<void> check_groups(const Outputs& outputs, const SolverState& state) {
   std::vector<LightGroup> asked;
   if (outputs.groups) {
     const World& world = state.grouped.world ? *state.grouped.world : *state.world;
-    auto groups = find_light_groups(world.scene, *outputs.groups);
+    auto groups = asked_groups(world.scene, *outputs.groups);
     if (!groups) return tl::unexpected(groups.error());
     asked = std::move(*groups);
   }
@@ -94,7 +107,7 @@ Result<SolverState> begin(const Outputs& outputs, const std::shared_ptr<const Wo
     auto state = begin_solve(world, origin.options, beginning,
                              least_memory(outputs.lit, most_vertices_of_input(*world)));
     if (!state || !outputs.groups) return state;
-    auto groups = find_light_groups(world->scene, *outputs.groups);
+    auto groups = asked_groups(world->scene, *outputs.groups);
     if (!groups) return tl::unexpected(groups.error());
     set_groups(*state, std::move(*groups));
     return state;
@@ -247,7 +260,7 @@ void add_solve(CLI::App& cli, int& status) {
           ->type_name("FILE");
   sub.add_option("--light-groups", command->outputs.groups,
                  "take the light apart by who sends it, for mix: each material, light and the sky "
-                 "by name, or several together as \"ceiling=LampA,LampB;desk=LampC\"")
+                 "by name, or several together as \"ceiling=LampA,LampB;desk=LampC\"; at most 256")
       ->expected(0, 1)
       ->type_name("GROUPS");
   sub.add_flag("--resume", command->outputs.resume, "go on from the checkpoint")->needs(checkpoint);

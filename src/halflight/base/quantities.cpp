@@ -2,7 +2,7 @@
 
 #include <array>
 #include <charconv>
-#include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -16,15 +16,17 @@ struct Unit {
   double factor;
 };
 
-// A positive number and one of the units; the empty name is the unit that may be left out.
+// A positive number and one of the units, within single precision; the empty name is the unit that
+// may be left out.
 Result<double> parse(std::string_view text, std::span<const Unit> units, const char* kind,
                      const char* remedy) {
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   const std::string_view suffix(end, text.data() + text.size());
-  if (error == std::errc() && std::isfinite(number) && number >= 0.0)
+  constexpr double kLargest{std::numeric_limits<float>::max()};
+  if (error == std::errc() && number >= 0.0)
     for (const Unit& unit : units)
-      if (suffix == unit.name) return number * unit.factor;
+      if (suffix == unit.name && number * unit.factor <= kLargest) return number * unit.factor;
   return input_error(fmt::format("'{}' is not a {}", text, kind), {}, remedy);
 }
 

@@ -1,6 +1,6 @@
 #include "halflight/io/feature_size_rules.h"
 
-#include <algorithm>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -31,17 +31,22 @@ tl::unexpected<Error> wrong(const std::string& where, const toml::source_region&
 }
 
 // Rules need no dotted keys, and each dot nests the tables deeper, which end by recursion.
-constexpr std::ptrdiff_t kMostDots = 32;
+constexpr int kMostDots = 32;
 
+// Counted in quotes and comments too, as only a parser can tell them. Dots that nest have a key
+// between them, so a row of them counts as one.
 std::optional<std::size_t> line_of_too_many_dots(std::string_view text) {
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::string_view line = text.substr(0, text.find_first_of("\n\r"));
-    if (std::count(
-            line.begin(),
-            line.begin() + static_cast<std::ptrdiff_t>(std::min(line.find('#'), line.size())),
-            '.') > kMostDots)
-      return number;
-    text.remove_prefix(std::min(line.size() + 1, text.size()));
+  std::size_t line = 1;
+  int dots = 0;
+  char last = ' ';  // that is no space
+  for (const char c : text) {
+    if (c == '\n') {
+      ++line;
+      dots = 0;
+    } else if (c == '.' && last != '.' && ++dots > kMostDots) {
+      return line;
+    }
+    if (c != ' ' && c != '\t') last = c;
   }
   return std::nullopt;
 }
@@ -53,7 +58,7 @@ Result<float> to_feature_size(const toml::node& value) {
     return static_cast<float>(*length);
   }
   const auto metres = value.value<double>();
-  if (!metres || !std::isfinite(*metres) || *metres < 0.0)
+  if (!metres || !(*metres >= 0.0 && *metres <= double{std::numeric_limits<float>::max()}))
     return input_error("feature-size is not a length", {}, kRemedy);
   return static_cast<float>(*metres);
 }
@@ -66,6 +71,10 @@ Result<FeatureSizeRule> to_rule(const std::string& where, const toml::table& tab
       const auto name = value.value_exact<std::string>();
       if (!name || name->empty())
         return wrong(where, value.source(), fmt::format("{} is not a name", key.str()));
+      if (name->size() > kLongestRuleName)
+        return input_error(fmt::format("{} is longer than {} bytes, line {}", key.str(),
+                                       kLongestRuleName, value.source().begin.line),
+                           where, "put a * for a part of it");
       (key == "material" ? rule.material : rule.node) = *name;
     } else if (key == "feature-size") {
       const Result<float> size = to_feature_size(value);
@@ -102,6 +111,10 @@ Result<std::vector<FeatureSizeRule>> parse_feature_size_rules(std::string_view t
     if (key != "rule" || !list)
       return wrong(where, value.source(), fmt::format("unknown key '{}'", key.str()));
     for (const toml::node& node : *list) {
+      if (rules.size() == kMostRules)
+        return input_error(fmt::format("there are more than {} rules, line {}", kMostRules,
+                                       node.source().begin.line),
+                           where, "let one rule speak for several names, with a *");
       if (!node.is_table()) return wrong(where, node.source(), "a rule is not a table");
       Result<FeatureSizeRule> rule = to_rule(where, *node.as_table());
       if (!rule) return tl::unexpected(rule.error());

@@ -21,6 +21,10 @@ struct FeatureSizeRule {
   float feature_size = 0.f;  // s, metres
 };
 
+// So many bytes of a name in a rule, and so many rules in a file.
+inline constexpr std::size_t kLongestRuleName = 255;
+inline constexpr std::size_t kMostRules = 1024;
+
 // In the order of the file. Errors name the line.
 Result<std::vector<FeatureSizeRule>> read_feature_size_rules(const std::filesystem::path& path);
 // `where` names the text in messages.

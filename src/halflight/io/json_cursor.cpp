@@ -90,8 +90,8 @@ std::string JsonCursor::string_or(std::string_view key, std::string_view fallbac
 
 std::string JsonCursor::name() const {
   std::string name = string_or("name", "");
-  if (name.size() > kMaxNameBytes)
-    at("name").fail("this has more than " + std::to_string(kMaxNameBytes) + " bytes",
+  if (name.size() > kLongestName)
+    at("name").fail("this has more than " + std::to_string(kLongestName) + " bytes",
                     "shorten the name");
   return name;
 }

@@ -41,7 +41,7 @@ class JsonCursor {
   float float_or(std::string_view key, float fallback) const;
   std::size_t count_or(std::string_view key, std::size_t fallback) const;
   std::string string_or(std::string_view key, std::string_view fallback) const;
-  std::string name() const;  // of at most kMaxNameBytes; empty when it has none
+  std::string name() const;  // of at most kLongestName; empty when it has none
   bool boolean_or(std::string_view key, bool fallback) const;
   // Exactly N finite numbers into `numbers`; left alone when the member is missing.
   template <class Numbers>

@@ -1,8 +1,10 @@
 #include "halflight/io/obj_materials.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
+#include "halflight/io/scene_limits.h"
 #include "halflight/io/text_lines.h"
 #include "halflight/scene/radiance.h"
 
@@ -47,6 +49,9 @@ MapOptions read_map_options(std::string_view arguments) {
   std::replace(options.file.begin(), options.file.end(), '\\', '/');
   return options;
 }
+
+// Repetitions of a picture: far beyond, sums of scale and offset are no numbers.
+constexpr float kFarthestMap = 1e6f;
 
 // A colour of one (grey) or three numbers.
 std::optional<Rgb> read_colour(LineWords words) {
@@ -96,6 +101,12 @@ bool read_numbers(std::string_view key, LineWords words, Draft& draft) {
 }  // namespace
 
 void ObjMaterials::read_library(const std::filesystem::path& path) {
+  std::error_code unknown;
+  const auto file = std::filesystem::weakly_canonical(path, unknown);
+  if (!libraries_.insert(unknown ? path : file).second) return;
+  if (libraries_.size() > kMaxLibraries)
+    fail_reading("there are more than " + std::to_string(kMaxLibraries) + " material libraries",
+                 path.string(), "put their materials into one file");
   Result<Bytes> text = read_file(path);
   if (!text) {
     warnings_.add(text.error().line() + "; materials without it have reflectance 0.5");
@@ -117,9 +128,10 @@ void ObjMaterials::read_library(Bytes text, const std::filesystem::path& path) {
     const std::string_view key = words.word();
     if (key == "newmtl") {
       finish();
+      const std::string_view name = checked_name(words.rest(), path, lines.number());
       current = scene_.materials.push_back({});
-      scene_.materials[current].name = words.rest();
-      by_name_.emplace(words.rest(), current);
+      scene_.materials[current].name = name;
+      by_name_.emplace(name, current);
     } else if (current.valid()) {
       if (!read_numbers(key, words, draft))
         warnings_.add(path.string() + ":" + std::to_string(lines.number()) + ": '" +
@@ -179,6 +191,10 @@ TextureRef ObjMaterials::read_map(std::string_view arguments, const std::filesys
   // OBJ: u' = s u + o with v from the bottom; v is flipped before and after.
   const auto& s = options.scale;
   const auto& o = options.offset;
+  if (std::max({std::abs(s[0]), std::abs(s[1]), std::abs(o[0]), std::abs(o[1])}) > kFarthestMap) {
+    warnings_.add(options.file + " is scaled or moved by more than a million; that is ignored");
+    return ref;
+  }
   ref.uv_transform = {s[0], 0.f, o[0], 0.f, s[1], 1.f - s[1] - o[1]};
   return ref;
 }

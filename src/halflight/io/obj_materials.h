@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,7 +24,8 @@ class ObjMaterials {
  public:
   ObjMaterials(Scene& scene, ReadWarnings& warnings) : scene_(scene), warnings_(warnings) {}
 
-  // Adds the materials of one file. A missing file is a warning.
+  // Adds the materials of one file, once however often it is asked for. A missing file is a
+  // warning.
   void read_library(const std::filesystem::path& path);
   void read_library(Bytes text, const std::filesystem::path& path);
   // The named material; one with default values (and a warning) when no library has it.
@@ -42,6 +44,7 @@ class ObjMaterials {
 
   Scene& scene_;
   ReadWarnings& warnings_;
+  std::set<std::filesystem::path> libraries_;
   std::map<std::string, MaterialId, std::less<>> by_name_;
   std::vector<Picture> pictures_;
   std::map<std::string, std::size_t> picture_of_path_;

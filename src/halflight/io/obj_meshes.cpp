@@ -54,8 +54,10 @@ std::string node_name(const std::string& object, const std::string& group,
 
 ObjMeshes::Triangles& ObjMeshes::faces(const std::string& object, const std::string& group,
                                        MaterialId material) {
-  const std::size_t g =
-      group_of_name_.emplace(std::pair(object, group), group_of_name_.size()).first->second;
+  const auto [named, is_new] =
+      group_of_name_.emplace(std::pair(object, group), group_of_name_.size());
+  if (is_new) name_bytes_.take(object.size() + group.size(), file_);
+  const std::size_t g = named->second;
   const auto [part, added] = part_of_key_.emplace(std::pair(g, material), parts_.size());
   if (added) parts_.push_back({g, material, {}});
   return parts_[part->second].triangles;

@@ -30,6 +30,8 @@ class ObjMeshes {
  public:
   using Triangles = std::vector<std::array<ObjCorner, 3>>;
 
+  explicit ObjMeshes(std::string file) : file_(std::move(file)) {}
+
   // Where further faces of that group and material go.
   Triangles& faces(const std::string& object, const std::string& group, MaterialId material);
   bool empty() const { return parts_.empty(); }
@@ -44,10 +46,12 @@ class ObjMeshes {
     MaterialId material;
     Triangles triangles;
   };
+  std::string file_;  // for messages
   using GroupName = std::pair<std::string, std::string>;
   std::map<GroupName, std::size_t> group_of_name_;
   std::map<std::pair<std::size_t, MaterialId>, std::size_t> part_of_key_;
   std::vector<Part> parts_;
+  ReadBudget name_bytes_{"bytes of names", kMaxNameBytes};
 };
 
 }  // namespace halflight

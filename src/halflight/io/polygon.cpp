@@ -1,6 +1,7 @@
 // Ear clipping (Meisters 1975; O'Rourke, Computational Geometry in C, 1.4): an ear is a convex
 // corner whose triangle holds no other corner; cutting one leaves a smaller polygon. Of the ears
-// the best shaped is cut first. O(n^2) time, and O(n) per corner to find the reflex corners inside.
+// the best shaped is cut first. O(n^2) time, and O(n) per corner to find the reflex corners inside:
+// no other lies there alone, unless the polygon crosses itself.
 #include "halflight/io/polygon.h"
 
 #include <glm/geometric.hpp>
@@ -13,6 +14,8 @@ using DVec2 = glm::dvec2;
 // Above this, a polygon is cut as a fan from its first corner: quadratic time would let a small
 // file keep the reader busy for hours, and no modeller writes such faces.
 constexpr std::size_t kMaxEarClipped = 4096;
+// Up to this, what is quadratic does not count.
+constexpr std::size_t kFewCorners = 64;
 
 // Twice the signed area of a triangle.
 double cross(DVec2 a, DVec2 b, DVec2 c) {
@@ -54,6 +57,8 @@ class EarClipper {
       next_[i] = (i + 1) % n;
       previous_[i] = (i + n - 1) % n;
     }
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (!(corner_area(i) > 0.0)) reflex_.push_back(i);
     for (std::uint32_t i = 0; i < n; ++i) quality_[i] = ear_quality(i);
   }
 
@@ -65,6 +70,7 @@ class EarClipper {
     const std::uint32_t before = previous_[best], after = next_[best];
     next_[before] = after;
     previous_[after] = before;
+    std::erase(reflex_, best);
     start_ = before;
     if (--remaining_ > 2) {
       quality_[before] = ear_quality(before);
@@ -76,12 +82,16 @@ class EarClipper {
  private:
   static constexpr double kNoEar = -1.0;
 
+  double corner_area(std::uint32_t i) const {
+    return cross(points_[previous_[i]], points_[i], points_[next_[i]]);
+  }
+
   // Area over squared longest side; kNoEar when the corner is no ear.
   double ear_quality(std::uint32_t i) const {
     const DVec2 a = points_[previous_[i]], b = points_[i], c = points_[next_[i]];
-    const double area = cross(a, b, c);
+    const double area = corner_area(i);
     if (!(area > 0.0)) return kNoEar;
-    for (std::uint32_t k = next_[next_[i]]; k != previous_[i]; k = next_[k]) {
+    for (const std::uint32_t k : reflex_) {
       const DVec2 p = points_[k];
       if (p == a || p == b || p == c) continue;
       if (cross(a, b, p) >= 0.0 && cross(b, c, p) >= 0.0 && cross(c, a, p) >= 0.0) return kNoEar;
@@ -92,6 +102,7 @@ class EarClipper {
 
   std::vector<DVec2> points_;
   std::vector<std::uint32_t> next_, previous_;
+  std::vector<std::uint32_t> reflex_;  // or straight, when all corners were there
   std::vector<double> quality_;
   std::size_t remaining_;
   std::uint32_t start_ = 0;
@@ -105,6 +116,10 @@ bool fan_covers_quad(std::span<const Vec3> corners) {
 }
 
 }  // namespace
+
+std::size_t cutting_effort(std::size_t corners) {
+  return corners <= kFewCorners || corners > kMaxEarClipped ? 0 : corners * corners;
+}
 
 void triangulate_polygon(std::span<const Vec3> corners,
                          std::vector<std::array<std::uint32_t, 3>>& triangles) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,5 +17,8 @@ namespace halflight {
 // gives that many triangles, some of them degenerate or overlapping.
 void triangulate_polygon(std::span<const Vec3> corners,
                          std::vector<std::array<std::uint32_t, 3>>& triangles);
+
+// What that takes, as the square of the number of corners; 0 where the time is about linear.
+std::size_t cutting_effort(std::size_t corners);
 
 }  // namespace halflight

@@ -65,9 +65,9 @@ class ObjReader {
     else if (key == "p" || key == "l")
       points_and_lines_.add(number);
     else if (key == "o" || key == "g")
-      start_group(key == "o", words.rest());
+      start_group(key == "o", checked_name(words.rest(), path_, number));
     else if (key == "usemtl")
-      start_material(words.rest());
+      start_material(checked_name(words.rest(), path_, number));
     else if (key == "mtllib")
       read_libraries(words.rest());
   }
@@ -126,6 +126,10 @@ class ObjReader {
       outline_.push_back(usable ? data_.positions[position] : Vec3(0.f));
     }
     if (!usable || face_.size() < 3) return bad_faces_.add(line);
+    effort_ += cutting_effort(face_.size());
+    if (effort_ > kMaxCuttingEffort)
+      fail_reading("too many faces have hundreds of corners", place(line),
+                   "triangulate them when exporting");
     cut_.clear();
     triangulate_polygon(outline_, cut_);
     triangles_.take(cut_.size(), path_.string());
@@ -162,11 +166,13 @@ class ObjReader {
     for (LineWords words(names); !words.empty();) materials_.read_library(library(words.word()));
   }
 
+  std::string place(std::size_t line) const { return path_.string() + ":" + std::to_string(line); }
+
   void report_tallies() {
     const auto report = [&](const Tally& tally, const std::string& what) {
       if (tally.count > 0)
-        warnings_.add(path_.string() + ":" + std::to_string(tally.first_line) + ": " + what + " (" +
-                      std::to_string(tally.count) + " in all)");
+        warnings_.add(place(tally.first_line) + ": " + what + " (" + std::to_string(tally.count) +
+                      " in all)");
     };
     report(bad_vertices_,
            "a vertex, normal or texture coordinate has too few numbers that can be "
@@ -185,8 +191,9 @@ class ObjReader {
   ReadWarnings warnings_;
   ObjMaterials materials_;
   ObjVertexData data_;
-  ObjMeshes meshes_;
+  ObjMeshes meshes_{path_.string()};
   ReadBudget triangles_{"triangles", kMaxTriangles};
+  std::size_t effort_ = 0;  // of cutting faces
 
   std::string object_, group_;             // as the last o and g said
   MaterialId material_;                    // as the last usemtl said

@@ -4,7 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "halflight/io/read_failure.h"
 
@@ -26,8 +29,6 @@ inline constexpr std::size_t kMaxDecodedBytes = std::size_t{1} << (32 - kFewer);
 // Of accessors without data.
 inline constexpr std::size_t kMaxZeroElements = std::size_t{1} << (24 - kFewer);
 inline constexpr std::size_t kMaxSceneTexels = std::size_t{1} << (30 - kFewer);
-// Of one name: many things can have the same one, and each writes it out.
-inline constexpr std::size_t kMaxNameBytes = 4096;
 // Of pictures as they are stored, which the lit scene holds again.
 inline constexpr std::size_t kMaxPictureBytes = std::size_t{1} << (31 - kFewer);
 // A picture above this size is refused before memory is taken (16384 x 8192: 0.5 GB): a flat PNG
@@ -35,6 +36,14 @@ inline constexpr std::size_t kMaxPictureBytes = std::size_t{1} << (31 - kFewer);
 inline constexpr std::size_t kMaxTexels = std::size_t{1} << (27 - kFewer);
 // The same of a picture of floats (0.8 GB).
 inline constexpr std::int64_t kMaxFloatPixels = std::int64_t{1} << (26 - kFewer);
+// Squares of the corners of large faces of OBJ files: seconds of cutting them into triangles.
+inline constexpr std::size_t kMaxCuttingEffort = std::size_t{1} << (30 - kFewer);
+// Material libraries that an OBJ file names, there or not.
+inline constexpr std::size_t kMaxLibraries = 1024;
+// Bytes of one name: many things can have the same one, and each keeps it and writes it out.
+inline constexpr std::size_t kLongestName = 4096;
+// Of all groups together: each holds the name of its object, too.
+inline constexpr std::size_t kMaxNameBytes = std::size_t{1} << (27 - kFewer);
 
 // Counts what has been asked for and fails when it passes the limit.
 class ReadBudget {
@@ -53,5 +62,13 @@ class ReadBudget {
   std::size_t limit_;
   std::size_t used_ = 0;
 };
+
+inline std::string_view checked_name(std::string_view name, const std::filesystem::path& file,
+                                     std::size_t line) {
+  if (name.size() > kLongestName)
+    fail_reading("a name is longer than " + std::to_string(kLongestName) + " bytes",
+                 file.string() + ":" + std::to_string(line), "shorten it");
+  return name;
+}
 
 }  // namespace halflight

@@ -14,14 +14,14 @@ namespace halflight {
 // The words of one line, taken from the left.
 class LineWords {
  public:
-  explicit LineWords(std::string_view line) : rest_(line) { skip_spaces(); }
+  explicit LineWords(std::string_view line)
+      : rest_(line.substr(0, line.find_last_not_of(kSpaces) + 1)) {
+    skip_spaces();
+  }
 
   bool empty() const { return rest_.empty(); }
   // Everything that is left, without the spaces around it.
-  std::string_view rest() const {
-    const std::size_t last = rest_.find_last_not_of(kSpaces);
-    return last == std::string_view::npos ? std::string_view() : rest_.substr(0, last + 1);
-  }
+  std::string_view rest() const { return rest_; }
   // The next word; empty at the end of the line.
   std::string_view word() {
     const std::size_t length = std::min(rest_.find_first_of(kSpaces), rest_.size());

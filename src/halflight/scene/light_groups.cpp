@@ -1,27 +1,41 @@
 #include "halflight/scene/light_groups.h"
 
 #include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
 namespace halflight {
 namespace {
 
-// The group of that name, which is appended when there is none yet.
-LightGroup& group_named(std::vector<LightGroup>& groups, const std::string& name) {
-  const auto found = std::find_if(groups.begin(), groups.end(),
-                                  [&](const LightGroup& g) { return g.name == name; });
-  if (found != groups.end()) return *found;
-  groups.push_back({name, {}, {}, false});
-  return groups.back();
-}
+// Groups in the order in which their names come first.
+class GroupsByName {
+ public:
+  // The group of that name, which is appended when there is none yet.
+  LightGroup& operator[](const std::string& name) {
+    const auto [known, added] = index_.emplace(name, groups_.size());
+    if (added) groups_.push_back({name, {}, {}, false});
+    return groups_[known->second];
+  }
+  // Null when there is none.
+  LightGroup* find(const std::string& name) {
+    const auto known = index_.find(name);
+    return known == index_.end() ? nullptr : &groups_[known->second];
+  }
+  std::vector<LightGroup>& all() { return groups_; }
+
+ private:
+  std::vector<LightGroup> groups_;
+  std::unordered_map<std::string, std::size_t> index_;
+};
 
 template <class IdT>
 std::string name_or_number(const std::string& name, const char* kind, IdT id) {
   return name.empty() ? fmt::format("{} {}", kind, id.value) : name;
 }
 
-std::vector<LightGroup> one_for_each_name(const Scene& scene) {
+GroupsByName one_for_each_name(const Scene& scene) {
   IdVector<MaterialId, std::uint8_t> used(scene.materials.size(), 0);
   IdVector<LightId, std::uint8_t> placed(scene.lights.size(), 0);
   for (const Node& node : scene.nodes) {
@@ -29,20 +43,20 @@ std::vector<LightGroup> one_for_each_name(const Scene& scene) {
     if (!node.mesh.valid()) continue;
     for (const Primitive& p : scene.meshes[node.mesh].primitives) used[p.material] = 1;
   }
-  std::vector<LightGroup> groups;
+  GroupsByName groups;
   for (std::size_t i = 0; i < used.size(); ++i) {
     const MaterialId id(i);
     const Material& m = scene.materials[id];
     if (used[id] && m.emits())
-      group_named(groups, name_or_number(m.name, "material", id)).materials.push_back(id);
+      groups[name_or_number(m.name, "material", id)].materials.push_back(id);
   }
   for (std::size_t i = 0; i < placed.size(); ++i) {
     const LightId id(i);
     const Light& light = scene.lights[id];
     if (placed[id] && max_component(light.intensity) > 0.f)
-      group_named(groups, name_or_number(light.name, "light", id)).lights.push_back(id);
+      groups[name_or_number(light.name, "light", id)].lights.push_back(id);
   }
-  if (max_component(scene.sky) > 0.f) group_named(groups, "sky").sky = true;
+  if (max_component(scene.sky) > 0.f) groups["sky"].sky = true;
   return groups;
 }
 
@@ -70,8 +84,8 @@ void append(LightGroup& to, LightGroup& from) {
 }  // namespace
 
 Result<std::vector<LightGroup>> find_light_groups(const Scene& scene, std::string_view together) {
-  std::vector<LightGroup> each = one_for_each_name(scene);
-  const std::string names = names_of(each);
+  GroupsByName each = one_for_each_name(scene);
+  const std::string names = names_of(each.all());
   std::vector<LightGroup> groups;
   while (!together.empty()) {
     std::string_view members = next_part(together, ';');
@@ -84,23 +98,21 @@ Result<std::vector<LightGroup>> find_light_groups(const Scene& scene, std::strin
                          "write it as \"ceiling=LampA,LampB;desk=LampC\"");
     while (!members.empty()) {
       const std::string name(next_part(members, ','));
-      const auto found = std::find_if(each.begin(), each.end(), [&](const LightGroup& g) {
-        return !g.empty() && g.name == name;
-      });
-      if (found == each.end())
+      LightGroup* const found = each.find(name);
+      if (!found || found->empty())
         return input_error(fmt::format("nothing named '{}' is left that shines", name),
                            "--light-groups", "there is " + names);
       append(group, *found);
     }
     groups.push_back(group);
   }
-  for (LightGroup& g : each)
+  for (LightGroup& g : each.all())
     if (!g.empty()) groups.push_back(std::move(g));
-  for (std::size_t i = 0; i < groups.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k)
-      if (groups[i].name == groups[k].name)
-        return input_error(fmt::format("two groups are called '{}'", groups[i].name),
-                           "--light-groups", "choose another name");
+  std::unordered_set<std::string_view> taken;
+  for (const LightGroup& g : groups)
+    if (!taken.insert(g.name).second)
+      return input_error(fmt::format("two groups are called '{}'", g.name), "--light-groups",
+                         "choose another name");
   return groups;
 }
 

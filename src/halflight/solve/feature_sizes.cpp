@@ -1,6 +1,8 @@
 #include "halflight/solve/feature_sizes.h"
 
 #include <algorithm>
+#include <array>
+#include <bitset>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -12,57 +14,76 @@ namespace {
 
 constexpr float kNone = -1.f;
 
-// Where it goes wrong, the last star covers one more character: no earlier one has to change.
-bool matches(std::string_view name, std::string_view pattern) {
-  constexpr std::size_t kNoStar = std::string_view::npos;
-  std::size_t n = 0, p = 0, star = kNoStar, covered = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      covered = n;
-    } else if (p < pattern.size() && pattern[p] == name[n]) {
-      ++n;
-      ++p;
-    } else if (star != kNoStar) {
-      p = star + 1;
-      n = ++covered;
-    } else {
-      return false;
-    }
+// A name with stars as bits: the i-th is set while its first i letters stand for what has been
+// read, so that any name is read once, whatever the stars could stand for.
+class Pattern {
+ public:
+  // Not longer than kLongestRuleName.
+  explicit Pattern(std::string_view text) {
+    for (const char c : text)
+      if (c == '*')
+        waits_.set(length_);
+      else
+        by_letter_[static_cast<unsigned char>(c)].set(++length_);
   }
-  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+
+  bool matches(std::string_view name) const {
+    Lengths read(1);
+    for (const char c : name) {
+      read = (read << 1 & by_letter_[static_cast<unsigned char>(c)]) | (read & waits_);
+      if (read.none()) return false;
+    }
+    return read[length_];
+  }
+
+ private:
+  using Lengths = std::bitset<kLongestRuleName + 1>;
+  std::array<Lengths, 256> by_letter_{};  // where a letter leads to
+  Lengths waits_;                         // where a star takes any letter
+  std::size_t length_ = 0;                // without stars
+};
+
+// 1 where the name matches; everywhere when there is no pattern.
+template <class IdT, class T>
+IdVector<IdT, std::uint8_t> named(const IdVector<IdT, T>& items, const std::string& pattern) {
+  IdVector<IdT, std::uint8_t> found(items.size(), 1);
+  if (pattern.empty()) return found;
+  const Pattern letters(pattern);
+  for (std::size_t i = 0; i < items.size(); ++i)
+    found[IdT(i)] = letters.matches(items[IdT(i)].name) ? 1 : 0;
+  return found;
 }
 
-bool node_matches(const Scene& scene, NodeId node, std::string_view pattern) {
-  for (; node.valid(); node = scene.nodes[node].parent)
-    if (matches(scene.nodes[node].name, pattern)) return true;
-  return false;
-}
-
-bool applies(const FeatureSizeRule& rule, const World& world, TriangleId t) {
-  const Geometry& g = world.geometry;
-  if (!rule.material.empty() &&
-      !(g.materials[t].valid() &&
-        matches(world.scene.materials[g.materials[t]].name, rule.material)))
-    return false;
-  return rule.node.empty() ||
-         node_matches(world.scene, g.primitive_instances[g.instances[t]].node, rule.node);
+// What the rule is about, but for what has no triangles.
+std::vector<InstanceId> instances_of(const FeatureSizeRule& rule, const World& world) {
+  const Scene& scene = world.scene;
+  const auto materials = named(scene.materials, rule.material);
+  auto nodes = named(scene.nodes, rule.node);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const NodeId parent = scene.nodes[NodeId(i)].parent;
+    if (parent.valid()) nodes[NodeId(i)] |= nodes[parent];
+  }
+  std::vector<InstanceId> found;
+  const auto& placed = world.geometry.primitive_instances;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const PrimitiveInstance& p = placed[InstanceId(i)];
+    if (!p.triangles.empty() && nodes[p.node] != 0 &&
+        materials[scene.meshes[p.mesh].primitives[p.primitive].material] != 0)
+      found.emplace_back(i);
+  }
+  return found;
 }
 
 }  // namespace
 
 Result<void> check_rules(const std::vector<FeatureSizeRule>& rules, const World& world,
                          const std::filesystem::path& file) {
-  for (const FeatureSizeRule& rule : rules) {
-    bool any = false;
-    for (std::size_t i = 0; i < world.geometry.triangles.size() && !any; ++i)
-      any = applies(rule, world, TriangleId(i));
-    if (!any)
+  for (const FeatureSizeRule& rule : rules)
+    if (instances_of(rule, world).empty())
       return input_error(fmt::format("no surface has material '{}' and node '{}'",
                                      rule.material.empty() ? "*" : rule.material,
                                      rule.node.empty() ? "*" : rule.node),
                          file.string(), "names may hold *; halflight inspect lists them");
-  }
   return {};
 }
 
@@ -71,11 +92,13 @@ FeatureSizes::FeatureSizes(const World& world, const Surfaces& surfaces, float o
                            std::optional<PixelFeatureSize> pixels)
     : otherwise_(otherwise), pixels_(std::move(pixels)) {
   if (rules.empty()) return;
-  by_rule_ = IdVector<SurfaceId, float>(surfaces.surfaces.size(), kNone);
-  for (std::size_t i = 0; i < by_rule_.size(); ++i)
-    for (const FeatureSizeRule& rule : rules)
-      if (applies(rule, world, surfaces.triangles[surfaces[SurfaceId(i)].first_triangle]))
-        by_rule_[SurfaceId(i)] = rule.feature_size;
+  IdVector<InstanceId, float> by_instance(world.geometry.primitive_instances.size(), kNone);
+  for (const FeatureSizeRule& rule : rules)
+    for (const InstanceId i : instances_of(rule, world)) by_instance[i] = rule.feature_size;
+  by_rule_.reserve(surfaces.surfaces.size());
+  for (const Surface& surface : surfaces.surfaces)
+    by_rule_.push_back(
+        by_instance[world.geometry.instances[surfaces.triangles[surface.first_triangle]]]);
 }
 
 float FeatureSizes::at_distance(const Bounds3f& box) const {

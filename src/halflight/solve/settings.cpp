@@ -1,5 +1,6 @@
 #include "halflight/solve/settings.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -69,7 +70,8 @@ bool from_json(const Json& j, FeatureSizeRule& r) {
   if (!j.is_array() || j.size() != 3 || !j[0].is_string() || !j[1].is_string()) return false;
   r.material = j[0].get<std::string>();
   r.node = j[1].get<std::string>();
-  return from_json(j[2], r.feature_size) && r.feature_size >= 0.f;
+  return std::max(r.material.size(), r.node.size()) <= kLongestRuleName &&
+         from_json(j[2], r.feature_size) && r.feature_size >= 0.f;
 }
 Json to_json(const ViewOfInterest& v) {
   const PlacedCamera& c = v.camera;
@@ -109,7 +111,7 @@ std::string text_of(const std::optional<T>& value) {
 }
 bool parse(std::string_view text, std::vector<FeatureSizeRule>& rules) {
   const Json list = Json::parse(text, nullptr, false);
-  if (!list.is_array()) return false;
+  if (!list.is_array() || list.size() > kMostRules) return false;
   rules.resize(list.size());
   for (std::size_t i = 0; i < list.size(); ++i)
     if (!from_json(list[i], rules[i])) return false;
