@@ -20,13 +20,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kStartOfObj = 1 << 20;  // bytes
 // Of hostile files no more are looked at: they are compared by name with every output.
-constexpr std::size_t kMostFiles = 1 << 14, kLongestName = 4096;  // bytes
-constexpr int kMostWords = 32;                                    // options before a map's name
+constexpr std::size_t kMostFiles = 1 << 14, kLongestFileName = 4096;  // bytes
+constexpr int kMostWords = 32;                                        // options before a map's name
 
 using Files = std::set<fs::path>;
 
 void add(const fs::path& folder, std::string_view name, Files& files) {
-  if (!name.empty() && name.size() <= kLongestName && files.size() < kMostFiles)
+  if (!name.empty() && name.size() <= kLongestFileName && files.size() < kMostFiles)
     files.insert(folder / name);
 }
 
