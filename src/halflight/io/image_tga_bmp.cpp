@@ -1,5 +1,5 @@
 // TGA and BMP through stb_image, built here with every other format left out and, by a flag in
-// CMakeLists.txt, with variables set to zero: palettes may have fewer colours than are asked for.
+// CMakeLists.txt, with all variables set: palettes may have fewer colours than are asked for.
 #include <algorithm>
 #include <cstring>
 #include <memory>

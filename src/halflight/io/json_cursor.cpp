@@ -101,8 +101,8 @@ bool JsonCursor::boolean_or(std::string_view key, bool fallback) const {
   return member ? member->boolean() : fallback;
 }
 
-void JsonCursor::fail(std::string what, std::string remedy) const {
-  fail_reading(std::move(what), path_, std::move(remedy));
+void JsonCursor::fail(std::string_view what, std::string_view remedy) const {
+  fail_reading(what, path_, remedy);
 }
 
 void JsonCursor::check_length(std::size_t n) const {

@@ -53,7 +53,8 @@ class JsonCursor {
     return true;
   }
 
-  [[noreturn]] void fail(std::string what, std::string remedy = "export the scene again") const;
+  [[noreturn]] void fail(std::string_view what,
+                         std::string_view remedy = "export the scene again") const;
 
  private:
   void check_length(std::size_t n) const;
