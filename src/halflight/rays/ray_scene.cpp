@@ -79,11 +79,23 @@ struct RayScene::Impl {
     throw std::runtime_error("Embree fails with its error " + std::to_string(error));
   }
 
+  // Embree reads 16 bytes of each vertex, so there must be memory behind the last one.
+  void attach_vertices(RTCGeometry mesh) {
+    const std::vector<Vec3>& positions = geometry->positions.raw();
+    if (positions.capacity() > positions.size()) {
+      rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                 positions.data(), 0, sizeof(Vec3), positions.size());
+      return;
+    }
+    void* copy = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                         sizeof(Vec3), positions.size());
+    check();
+    std::copy(positions.begin(), positions.end(), static_cast<Vec3*>(copy));
+  }
+
   void attach(unsigned which) {
     RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                               geometry->positions.raw().data(), 0, sizeof(Vec3),
-                               geometry->positions.size());
+    attach_vertices(mesh);
     const auto& ids = triangles[which];
     if (all_opaque) {
       rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,

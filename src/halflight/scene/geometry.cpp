@@ -77,7 +77,7 @@ void make_room(const Scene& scene, Geometry& g) {
       for (std::size_t set = 0; set < 2; ++set) uvs[set] |= !p.uvs[set].empty();
     }
   }
-  g.positions.reserve(vertices);
+  g.positions.reserve(vertices + 1);  // rays read beyond the last one
   g.triangles.reserve(triangles);
   g.materials.reserve(triangles);
   g.instances.reserve(triangles);
