@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <memory>
 #include <string>
 
 #include <ImfChannelList.h>
@@ -12,9 +11,8 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfStdIO.h>
-#include <png.h>
 
-#include "halflight/io/image_reader.h"
+#include "halflight/io/png_reader.h"
 #include "halflight/io/scene_limits.h"
 
 namespace halflight {
@@ -28,23 +26,11 @@ Result<void> check_size(std::int64_t width, std::int64_t height, const std::stri
                      where, "at most " + std::to_string(kMaxFloatPixels) + " pixels can be read");
 }
 
-struct FreePng {
-  void operator()(png_image* image) const { png_image_free(image); }
-};
-
-tl::unexpected<Error> png_failure(const png_image& png, const std::string& where) {
-  return input_error(std::string("the PNG picture cannot be decoded: ") + png.message, where,
-                     "save it again");
-}
-
 // libpng decodes 16-bit files to linear light and 8-bit files to sRGB, as they come.
 Result<Image> decode_png_values(const Bytes& bytes, PngValues values, const std::string& where) {
-  if (auto fits = check_png_chunks(bytes, where); !fits) return tl::unexpected(fits.error());
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  const std::unique_ptr<png_image, FreePng> free_on_return(&png);
-  if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()))
-    return png_failure(png, where);
+  PngReader reader;
+  if (auto begun = reader.begin(bytes, where); !begun) return tl::unexpected(begun.error());
+  png_image& png = reader.png;
   if (auto fits = check_size(png.width, png.height, where); !fits)
     return tl::unexpected(fits.error());
 
@@ -55,7 +41,7 @@ Result<Image> decode_png_values(const Bytes& bytes, PngValues values, const std:
   std::vector<std::uint8_t> texels(deep ? 0 : PNG_IMAGE_SIZE(png));
   std::vector<std::uint16_t> deep_texels(deep ? PNG_IMAGE_SIZE(png) / 2 : 0);
   void* target = deep ? static_cast<void*>(deep_texels.data()) : texels.data();
-  if (!png_image_finish_read(&png, &black, target, 0, nullptr)) return png_failure(png, where);
+  if (!png_image_finish_read(&png, &black, target, 0, nullptr)) return reader.failure(where);
 
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {

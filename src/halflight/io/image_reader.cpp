@@ -6,6 +6,26 @@
 #include "halflight/io/scene_limits.h"
 
 namespace halflight {
+namespace {
+
+struct Decoder {
+  decltype(&decode_png) decode;
+  decltype(&png_size) size;
+};
+
+Decoder decoder_of(std::span<const std::uint8_t> bytes) {
+  switch (image_format(bytes)) {
+    case ImageFormat::png:
+      return {decode_png, png_size};
+    case ImageFormat::jpeg:
+      return {decode_jpeg, jpeg_size};
+    case ImageFormat::other:
+      break;
+  }
+  return {decode_tga_or_bmp, tga_or_bmp_size};
+}
+
+}  // namespace
 
 ImageFormat image_format(std::span<const std::uint8_t> bytes) {
   constexpr std::array<std::uint8_t, 8> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
@@ -31,27 +51,11 @@ std::string mime_type(ImageFormat format) {
 }
 
 Result<Image8> decode_image(std::span<const std::uint8_t> bytes, const std::string& where) {
-  switch (image_format(bytes)) {
-    case ImageFormat::png:
-      return decode_png(bytes, where);
-    case ImageFormat::jpeg:
-      return decode_jpeg(bytes, where);
-    case ImageFormat::other:
-      break;
-  }
-  return decode_tga_or_bmp(bytes, where);
+  return decoder_of(bytes).decode(bytes, where);
 }
 
 Result<ImageSize> image_size(std::span<const std::uint8_t> bytes, const std::string& where) {
-  switch (image_format(bytes)) {
-    case ImageFormat::png:
-      return png_size(bytes, where);
-    case ImageFormat::jpeg:
-      return jpeg_size(bytes, where);
-    case ImageFormat::other:
-      break;
-  }
-  return tga_or_bmp_size(bytes, where);
+  return decoder_of(bytes).size(bytes, where);
 }
 
 Result<Image8> read_image(const std::filesystem::path& path) {

@@ -45,10 +45,6 @@ Result<Image8> decode_png(std::span<const std::uint8_t> bytes, const std::string
 Result<Image8> decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& where);
 Result<Image8> decode_tga_or_bmp(std::span<const std::uint8_t> bytes, const std::string& where);
 
-// Nothing when every chunk of a PNG lies within it: libpng takes as much memory as a chunk claims,
-// up to 2 GB, before it looks for its bytes.
-Result<void> check_png_chunks(std::span<const std::uint8_t> bytes, const std::string& where);
-
 // Nothing when so many texels can be held.
 Result<void> check_image_size(const ImageSize& size, const std::string& where);
 
