@@ -106,10 +106,7 @@ void add_mix(CLI::App& cli, int& status) {
       ->take_all();
   add_sensor_arguments(command, arguments->sensors);
   add_lit_arguments(command, arguments->lit);
-  command.add_option("--threads", arguments->threads, "0: all cores")
-      ->check(from_to(0, kMostThreads))
-      ->type_name("N")
-      ->capture_default_str();
+  add_threads(command, arguments->threads);
   command.callback([arguments, &command, &status] {
     set_thread_count(arguments->threads);
     const Result<void> done = mix_groups(command, *arguments);

@@ -123,14 +123,8 @@ void add_reference(CLI::App& cli, int& status) {
       ->required();
   add_visibility_arguments(command, arguments->visibility, "exact");
   add_bounce_argument(command, arguments->visibility);
-  command.add_option("--seed", arguments->seed, "picks another set of samples")
-      ->check(any_number<std::uint64_t>())
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_option("--threads", arguments->threads, "0: all cores")
-      ->check(from_to(0, kMostThreads))
-      ->type_name("N")
-      ->capture_default_str();
+  add_seed(command, arguments->seed);
+  add_threads(command, arguments->threads);
   command.callback([arguments, &command, &status] {
     set_thread_count(arguments->threads);
     const Result<void> done = reference(command, *arguments);

@@ -134,10 +134,11 @@ Result<Image> path_traced(const RenderArguments& arguments, const World& world, 
 Result<void> render(const CLI::App& command, const RenderArguments& arguments) {
   if (auto ok = check(arguments); !ok) return ok;
   std::optional<Checkpoint> checkpoint;
-  CommandFiles files = files_of(arguments, is_checkpoint(arguments.scene.path));
+  const bool solved = is_checkpoint(arguments.scene.path);
+  CommandFiles files = files_of(arguments, solved);
   if (auto ok = check(files); !ok) return ok;
   warn_of_idle_options(command, arguments);
-  if (is_checkpoint(arguments.scene.path)) {
+  if (solved) {
     auto opened = Checkpoint::open(arguments.scene.path);
     if (!opened) return tl::unexpected(opened.error());
     checkpoint = std::move(*opened);
@@ -200,10 +201,7 @@ void add_render(CLI::App& cli, int& status) {
       ->needs(mask)
       ->check(from_to(1u, 1u << 24))
       ->capture_default_str();
-  command.add_option("--seed", arguments->seed, "picks another set of samples")
-      ->check(any_number<std::uint64_t>())
-      ->type_name("N")
-      ->capture_default_str();
+  add_seed(command, arguments->seed);
   command.callback([arguments, &command, &status] {
     set_thread_count(arguments->solve.threads);
     Result<void> done = check_for_checkpoint(command, *arguments);

@@ -71,10 +71,7 @@ void add_solve_arguments(CLI::App& command, SolveArguments& arguments) {
       ->check(CLI::IsMember({"auto", "json", "none"}).description(""))
       ->type_name("auto|json|none")
       ->capture_default_str();
-  command.add_option("--threads", arguments.threads, "0: all cores")
-      ->check(from_to(0, kMostThreads))
-      ->type_name("N")
-      ->capture_default_str();
+  add_threads(command, arguments.threads);
 }
 
 void add_files(CommandFiles& files, const SolveArguments& arguments) {
