@@ -26,7 +26,9 @@ class Server {
       if (reply.events) reply.events = [] { return std::nullopt; };  // nothing will happen
       return reply;
     };
-    auto server = LoopbackServer::start(0, kToken, handler);
+    WebLimits limits;
+    limits.stall_seconds = 0.02;  // replies are read only once all are there
+    auto server = LoopbackServer::start(0, kToken, handler, limits);
     require(server.has_value(), "there is a port");
     server_ = std::move(*server);
   }

@@ -245,6 +245,29 @@ TEST_F(ViewServer, LeavesReadersThatTakeNothing) {
   expect_page();
 }
 
+// Small replies, so many that the next one finds no room: neither its head nor its body.
+TEST(ViewServerReplies, AreWaitedForOnceWhereNobodyTakesThem) {
+  WebLimits limits;
+  limits.stall_seconds = 1.0;
+  const auto server = LoopbackServer::start(
+      0, kToken, [](const WebRequest&) { return web_text(200, "text/plain", "hello"); }, limits);
+  ASSERT_TRUE(server);
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+  std::string requests;
+  for (int i = 0; i < 400; ++i)
+    requests += fmt::format("GET /{}/page HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n\r\n", kToken,
+                            (*server)->port());
+  ASSERT_EQ(::send(ends[0], requests.data(), requests.size(), MSG_NOSIGNAL),
+            static_cast<ssize_t>(requests.size()));
+  ::shutdown(ends[0], SHUT_WR);
+  const auto start = Clock::now();
+  (*server)->serve(ends[1]);
+  EXPECT_GT(seconds_since(start), 0.9);
+  EXPECT_LT(seconds_since(start), 1.8);
+  ::close(ends[0]);
+}
+
 TEST_F(ViewServer, TurnsAwayMoreConnectionsThanItHolds) {
   std::vector<std::unique_ptr<RawClient>> crowd;
   for (int i = 0; i < 30; ++i) crowd.push_back(std::make_unique<RawClient>(server_->port()));

@@ -82,19 +82,9 @@ class BoundedStream final : public httplib::Stream {
     return static_cast<ssize_t>(n);
   }
   ssize_t write(const char* from, size_t size) override {
-    if (!std::exchange(replied_, true)) reply_begin_ = Clock::now();
-    constexpr std::size_t kPortion = 1 << 16;
-    std::size_t sent = 0;
-    while (sent < size) {
-      if (!endless_ && seconds_since(reply_begin_) > kLongestReply) return -1;
-      if (!wait(POLLOUT, limits_.stall_seconds)) return -1;
-      const ssize_t n = ::send(socket_, from + sent, std::min(kPortion, size - sent),
-                               MSG_NOSIGNAL | MSG_DONTWAIT);
-      if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)) continue;
-      if (n <= 0) return -1;
-      sent += static_cast<std::size_t>(n);
-    }
-    return static_cast<ssize_t>(size);
+    // The library goes on with a reply's body where its head was not taken.
+    if (!reader_left_ && !send(from, size)) reader_left_ = true;
+    return reader_left_ ? -1 : static_cast<ssize_t>(size);
   }
   void get_remote_ip_and_port(std::string& ip, int& port) const override {
     ip = kLoopback;
@@ -131,13 +121,28 @@ class BoundedStream final : public httplib::Stream {
     bytes_ += filled_;
     return true;
   }
+  bool send(const char* from, std::size_t size) {
+    if (!std::exchange(replied_, true)) reply_begin_ = Clock::now();
+    constexpr std::size_t kPortion = 1 << 16;
+    std::size_t sent = 0;
+    while (sent < size) {
+      if (!endless_ && seconds_since(reply_begin_) > kLongestReply) return false;
+      if (!wait(POLLOUT, limits_.stall_seconds)) return false;
+      const ssize_t n = ::send(socket_, from + sent, std::min(kPortion, size - sent),
+                               MSG_NOSIGNAL | MSG_DONTWAIT);
+      if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)) continue;
+      if (n <= 0) return false;
+      sent += static_cast<std::size_t>(n);
+    }
+    return true;
+  }
 
   int socket_;
   const WebLimits& limits_;
   const std::atomic<bool>& stopping_;
   std::array<char, 4096> buffer_{};
   std::size_t next_ = 0, filled_ = 0, bytes_ = 0;
-  bool replied_ = false, endless_ = false;
+  bool replied_ = false, endless_ = false, reader_left_ = false;
   Clock::time_point begin_, reply_begin_;
 };
 
