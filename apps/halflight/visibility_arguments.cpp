@@ -14,9 +14,6 @@
 namespace halflight::app {
 namespace {
 
-// Squares of lengths in between are neither 0 nor infinite in single precision.
-constexpr double kShortest = 1e-15, kLongest = 1e15;  // metres
-
 Visibility make_visibility(const World& world, VisibilityMode mode) {
   const Surfaces surfaces = build_surfaces(world.geometry);
   return Visibility(world, surfaces, one_cluster(surfaces), mode);
@@ -76,9 +73,9 @@ Result<float> resolve_feature_size(const VisibilityArguments& arguments) {
   if (*wish) return -1.f;
   const Result<double> length = parse_length(arguments.feature_size);
   if (!length) return tl::unexpected(length.error());
-  if (*length > kLongest || (*length > 0.0 && *length < kShortest))
+  if (*length > kLongestLength || (*length > 0.0 && *length < kShortestLength))
     return input_error(fmt::format("--feature-size '{}' is not a length from {:g} m to {:g} m",
-                                   arguments.feature_size, kShortest, kLongest),
+                                   arguments.feature_size, kShortestLength, kLongestLength),
                        {}, "write it like 5cm; 0 keeps all shadows exact");
   return static_cast<float>(*length);
 }

@@ -8,6 +8,8 @@
 
 #include <unistd.h>
 
+#include "halflight/base/one_line.h"
+
 namespace halflight {
 namespace {
 
@@ -21,16 +23,11 @@ tl::unexpected<Error> cannot_write(const std::filesystem::path& path) {
                       "check that the folder exists, is writable and has room");
 }
 
-// Names that are nearly as long as they may be lose their end, between two characters of UTF-8.
+// Names that are nearly as long as they may be lose their end.
 std::filesystem::path beside(const std::filesystem::path& path) {
   const std::string ending = ".partial-" + std::to_string(::getpid());
-  std::string name = path.filename().string();
-  if (name.size() + ending.size() > NAME_MAX) {
-    std::size_t length = NAME_MAX - ending.size();
-    while (length > 0 && (static_cast<unsigned char>(name[length]) & 0xc0u) == 0x80u) --length;
-    name.resize(length);
-  }
-  return path.parent_path() / (name + ending);
+  const std::string name = path.filename().string();
+  return path.parent_path() / (std::string(utf8_prefix(name, NAME_MAX - ending.size())) + ending);
 }
 
 bool write_all(std::FILE* f, std::span<const std::byte> bytes) {

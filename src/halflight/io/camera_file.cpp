@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "halflight/base/quantities.h"
 #include "halflight/io/read_file.h"
 
 namespace halflight {
@@ -13,8 +14,6 @@ using Json = nlohmann::json;
 
 constexpr double kDefaultFov = 45.0;  // degrees
 constexpr int kLargestSide = 32768;   // pixels
-// Squares of lengths in between are neither 0 nor infinite in single precision.
-constexpr float kShortest = 1e-15f, kLongest = 1e15f;
 
 std::optional<Vec3> vector_at(const Json& object, const char* key) {
   const auto found = object.find(key);
@@ -25,7 +24,7 @@ std::optional<Vec3> vector_at(const Json& object, const char* key) {
     if (!number.is_number()) return std::nullopt;
     v[k] = number.get<float>();
   }
-  return max_component(glm::abs(v)) <= kLongest ? std::optional(v) : std::nullopt;
+  return max_component(glm::abs(v)) <= kLongestLength ? std::optional(v) : std::nullopt;
 }
 
 int size_at(const Json& object, const char* key) {
@@ -39,7 +38,7 @@ Result<PlacedCamera> to_camera(const Json& object, const Mat4& to_world, const s
   const auto position = vector_at(object, "position"), target = vector_at(object, "target");
   auto forward = vector_at(object, "forward");
   if (position && target) forward = *target - *position;
-  if (!position || !forward || !(glm::length(*forward) > kShortest))
+  if (!position || !forward || !(glm::length(*forward) > kShortestLength))
     return input_error("the camera has no position or no direction", where,
                        R"(give "position": [x, y, z] and "forward": [x, y, z])");
   const auto fov = object.find("fov_y_deg");
@@ -50,7 +49,7 @@ Result<PlacedCamera> to_camera(const Json& object, const Mat4& to_world, const s
   PlacedCamera camera;
   camera.position = transform_point(to_world, *position);
   camera.forward = glm::normalize(transform_vector(to_world, *forward));
-  if (const auto up = vector_at(object, "up"); up && glm::length(*up) > kShortest)
+  if (const auto up = vector_at(object, "up"); up && glm::length(*up) > kShortestLength)
     camera.up = glm::normalize(transform_vector(to_world, *up));
   camera.vertical_fov = static_cast<float>(degrees) * kPi / 180.f;
   return camera;

@@ -1,7 +1,6 @@
 #include "halflight/io/files_of_scene.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -97,8 +96,7 @@ void add_named(Bytes text, std::initializer_list<std::string_view> wanted, const
 }  // namespace
 
 std::vector<fs::path> files_of_scene(const fs::path& scene) {
-  std::string ending = scene.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string ending = lower_case_extension(scene);
   const fs::path folder = scene.parent_path();
   Files files;
   if (ending == ".gltf" || ending == ".glb") {

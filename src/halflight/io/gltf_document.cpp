@@ -21,7 +21,7 @@ std::uint32_t word_at(ByteSpan bytes, std::size_t offset) {
 }
 
 bool is_glb(ByteSpan bytes, const std::filesystem::path& path) {
-  return path.extension() == ".glb" || path.extension() == ".GLB" ||
+  return lower_case_extension(path) == ".glb" ||
          (bytes.size() >= 4 && word_at(bytes, 0) == kGlbMagic);
 }
 

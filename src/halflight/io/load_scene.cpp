@@ -1,7 +1,6 @@
 #include "halflight/io/load_scene.h"
 
 #include <algorithm>
-#include <cctype>
 #include <new>
 
 #include "halflight/base/one_line.h"
@@ -13,12 +12,6 @@
 
 namespace halflight {
 namespace {
-
-std::string lower_case_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 // Of the file at `path`: its ending tells what it is.
 using SceneReader = Scene (*)(Bytes, const std::filesystem::path&);

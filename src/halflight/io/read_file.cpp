@@ -1,8 +1,15 @@
 #include "halflight/io/read_file.h"
 
+#include <cctype>
 #include <fstream>
 
 namespace halflight {
+
+std::string lower_case_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
 
 Result<Bytes> read_file(const std::filesystem::path& path) {
   std::error_code error;
