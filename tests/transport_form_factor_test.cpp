@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "halflight/base/hash.h"
+#include "halflight/rays/sampling.h"
 #include "halflight/transport/form_factor.h"
 #include "quad_scene.h"
 #include "solved_scene.h"
@@ -99,6 +101,29 @@ TEST(FormFactorOfPolygon, WhatLiesBelowTheHorizonDoesNotCount) {
   EXPECT_NEAR(polygon_form_factor(Vec3(0.f), kY, both), f, 1e-6f);
   const std::array<Vec3, 3> below{Vec3(-1, -1, 1), Vec3(1, -1, 1), Vec3(0, -2, 1)};
   EXPECT_EQ(polygon_form_factor(Vec3(0.f), kY, below), 0.f);
+}
+
+// Bulbs are made of thousands of facets, and seen from afar.
+TEST(FormFactorOfPolygon, OfSmallAndFarTrianglesIsThatOfTheirArea) {
+  for (const float size : {1e-2f, 1e-3f, 1e-4f, 1e-5f}) {
+    double sum = 0.0, expected = 0.0;
+    for (std::uint64_t i = 0; i < 200; ++i) {
+      const Vec3 x = uniform_sphere(random_shift(hash(i, 1)));
+      const Vec3 n = uniform_sphere(random_shift(hash(i, 2)));
+      const Vec3 u = size * uniform_sphere(random_shift(hash(i, 3)));
+      const Vec3 v = size * uniform_sphere(random_shift(hash(i, 4)));
+      const Vec3 centre = x + uniform_sphere(random_shift(hash(i, 5)));
+      const std::array<Vec3, 3> corners{centre, centre + u, centre + v};
+      const Vec3 scaled_normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+      const Vec3 to = (corners[0] + corners[1] + corners[2]) / 3.f - x;
+      const float squared = glm::dot(to, to);
+      if (glm::dot(to, n) < 0.1f) continue;
+      sum += static_cast<double>(polygon_form_factor(x, n, corners));
+      expected += static_cast<double>(0.5f * std::abs(glm::dot(scaled_normal, to)) *
+                                      glm::dot(to, n) / (kPi * squared * squared));
+    }
+    EXPECT_NEAR(sum / expected, 1.0, 0.02) << size;
+  }
 }
 
 TEST(FormFactorOfPolygon, AgreesWithTheCornerFormulaOfParallelRectangles) {
