@@ -88,7 +88,17 @@ TEST(Lint, MillimetresTakenAsMetresAndFarAwayScenesAreSuspect) {
   scene.to_world[3][3] = 1.0;
   EXPECT_THAT(codes(scene), Contains("suspicious-size"));
   scene.to_world = Mat4(1.0);
-  scene.to_world[3][0] = 1e6;
+  EXPECT_THAT(codes(scene), Not(Contains("far-from-origin")));
+  scene.to_world[3][0] = 1e3;
+  EXPECT_THAT(codes(scene), Contains("far-from-origin"));
+}
+
+TEST(Lint, OneCornerFarAwayIsSuspect) {
+  Scene scene = lamp_over_floor();
+  for (int i = 0; i < 20; ++i) scene.nodes.push_back(scene.nodes[NodeId(std::size_t{0})]);
+  EXPECT_THAT(codes(scene), Not(Contains("far-from-origin")));
+  scene.nodes.push_back(scene.nodes[NodeId(std::size_t{0})]);
+  scene.nodes[NodeId(std::size_t{21})].local[3][0] = 1e5;
   EXPECT_THAT(codes(scene), Contains("far-from-origin"));
 }
 

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "commands.h"
 #include "halflight/hierarchy/live_sides.h"
+#include "halflight/scene/lint.h"
 #include "halflight/solve/memory.h"
 #include "halflight/solve/mix.h"
 
@@ -62,6 +64,8 @@ Beginning beginning_of(const SolveOptions& options, const Deadline& deadline) {
 Result<SolverState> begin_solve(const std::shared_ptr<const World>& world,
                                 const SolveOptions& options, Beginning beginning,
                                 std::size_t for_outputs) {
+  if (const auto finding = far_corners(world->geometry))
+    warn(fmt::format("{} ({})", finding->message, finding->remedy));
   if (options.memory == 0) return make_state(world, options, beginning);
   const auto check = [&](std::size_t bytes, const char* of) -> Result<void> {
     if (bytes <= options.memory) return {};
@@ -96,8 +100,13 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
   if (!goals.error && !(wants_error && outcome.goal_met)) return outcome;
   // No time is left to measure in.
   if (progress.cancelled() || (deadline.set() && !outcome.goal_met)) return outcome;
-  const ErrorProbes probes(state);
-  outcome.error = probes.measure(state);
+  const ErrorProbes probes(state, progress);
+  const auto measure = [&] {
+    const EstimatedError error = probes.measure(state, progress);
+    if (!progress.cancelled()) outcome.error = error;
+  };
+  measure();
+  if (!outcome.error) return outcome;
   if (state.grouped.separated()) {
     outcome.goal_met = meets(goals, state, *outcome.error);
     return outcome;
@@ -106,7 +115,7 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
   // A solve that was resumed has some of its rounds behind it.
   const bool had_coarse_rounds = beginning_of(state.options, deadline) == Beginning::coarse;
   for (int round = had_coarse_rounds ? 1 : std::max<int>(1, state.schedule.round);
-       outcome.goal_met && outcome.error->relative_rms > *goals.error; ++round) {
+       outcome.goal_met && !(outcome.error->relative_rms <= *goals.error); ++round) {
     if (round == kMostRounds) {
       outcome.goal_met = false;
       break;
@@ -114,8 +123,8 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
     const float before = outcome.error->relative_rms;
     aim_finer(state, std::clamp(before / *goals.error, kSmallestStep, kLargestStep));
     outcome.goal_met = run();
+    measure();
     if (progress.cancelled()) break;
-    outcome.error = probes.measure(state);
     if (outcome.error->relative_rms > std::max(*goals.error, kLeastGain * before))
       outcome.goal_met = false;
   }
@@ -126,7 +135,9 @@ void separate_groups(SolverState& state, const SolveGoals& goals, const Progress
                      SolveOutcome& outcome) {
   separate(state, progress);
   if (!outcome.error || progress.cancelled()) return;
-  outcome.error = ErrorProbes(state).measure(state);
+  const EstimatedError error = ErrorProbes(state, progress).measure(state, progress);
+  if (progress.cancelled()) return;
+  outcome.error = error;
   outcome.goal_met = meets(goals, state, *outcome.error);
 }
 

@@ -51,6 +51,7 @@ struct Bounds3f {
   Vec3 center() const { return 0.5f * (lower + upper); }
   Vec3 extent() const { return empty() ? Vec3(0.f) : upper - lower; }
   float diagonal() const { return glm::length(extent()); }
+  float farthest() const { return max_component(glm::max(glm::abs(lower), glm::abs(upper))); }
   float longest_side() const { return max_component(extent()); }
   int longest_axis() const {
     const Vec3 e = extent();

@@ -198,10 +198,7 @@ RayScene::RayScene(const Scene& scene, const Geometry& geometry) : impl_(std::ma
   rtcCommitScene(impl_->scene);
   impl_->check();
 
-  const Vec3 farthest = geometry.triangles.empty() ? Vec3(1.f)
-                                                   : glm::max(glm::abs(geometry.bounds.lower),
-                                                              glm::abs(geometry.bounds.upper));
-  lift_distance_ = max_component(farthest) * 0x1p-17f;
+  lift_distance_ = halflight::lift_distance(geometry.bounds);
 }
 
 RayScene::~RayScene() = default;

@@ -5,6 +5,10 @@
 namespace halflight {
 namespace {
 
+// Of twice a triangle's area, m^4. Below, squares and products of areas and normals are flushed to
+// 0 somewhere.
+constexpr float kLeastSquaredArea = 1e-30f;
+
 bool usable(const Vec3& p) {  // false for what is not a number, too
   return glm::all(glm::lessThanEqual(glm::abs(p), Vec3(kFarthest)));
 }
@@ -43,8 +47,9 @@ void append_instance(const Scene& scene, const PrimitiveInstance& what, const Ma
     std::array<VertexId, 3> v;
     for (int k = 0; k < 3; ++k) v[k] = VertexId(placed.vertices.first + corner[k]);
     const Vec3 a = g.positions[v[0]], b = g.positions[v[1]], c = g.positions[v[2]];
-    const float doubled_area = glm::length(glm::cross(b - a, c - a));
-    if (!usable(a) || !usable(b) || !usable(c) || !(doubled_area > 0.f)) {
+    const Vec3 scaled_normal = glm::cross(b - a, c - a);
+    if (!usable(a) || !usable(b) || !usable(c) ||
+        !(glm::dot(scaled_normal, scaled_normal) >= kLeastSquaredArea)) {
       ++g.degenerate_triangles;
       continue;
     }
@@ -173,6 +178,10 @@ Vec4 sample(const Scene& scene, const Geometry& g, const TextureRef& ref, Triang
 }
 
 }  // namespace
+
+float lift_distance(const Bounds3f& bounds) {
+  return 0x1p-17f * (bounds.empty() ? 1.f : bounds.farthest());
+}
 
 Geometry flatten(const Scene& scene) {
   Geometry g;

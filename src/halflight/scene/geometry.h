@@ -64,8 +64,8 @@ struct Geometry {
   std::vector<PunctualLight> lights;
   std::vector<PlacedCamera> cameras;
   Bounds3f bounds;
-  // Left out: of zero area, not finite, or beyond kFarthest; lights that their node leaves without
-  // a direction or puts beyond it.
+  // Left out: of zero area or less than 1e-15 m2, not finite, or beyond kFarthest; lights that
+  // their node leaves without a direction or puts beyond it.
   std::size_t degenerate_triangles = 0;
   std::size_t lights_without_place = 0;
 
@@ -97,6 +97,8 @@ struct Geometry {
 };
 
 Geometry flatten(const Scene& scene);
+// By how much rays begin and end off surfaces, metres: more than the rounding error of coordinates.
+float lift_distance(const Bounds3f& bounds);
 // Whether the camera has a place within kFarthest, directions and an angle: nodes of no size or far
 // away leave it without.
 bool can_look(const PlacedCamera& camera);

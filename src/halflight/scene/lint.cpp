@@ -21,8 +21,11 @@ constexpr float kLargeScene = 300.f;
 constexpr float kNearlyWhite = 0.95f;
 // Below this, W/m2/sr or nits, an emitter lights nothing that anyone would see.
 constexpr float kDimRadiance = 1e-3f;
-// Float positions keep 2^-24 of their distance to the origin.
-constexpr float kFarFromOrigin = 1e4f;
+// Rays begin off surfaces by the rounding error of the farthest corners: more than this share of
+// the size of most of the scene, and shadows as small as those of the default feature size get
+// lost.
+constexpr float kLargestLift = 1e-3f;
+constexpr std::size_t kSampledTriangles = 4096;
 
 std::string name_of(const Scene& scene, MaterialId id) {
   const std::string& name = scene.materials[id].name;
@@ -46,13 +49,25 @@ void check_size(const Bounds3f& bounds, std::vector<Finding>& findings) {
     findings.push_back({Severity::warning, "suspicious-size",
                         fmt::format("the scene is only {:.4g} m across", diagonal),
                         "give its unit with --unit"});
-  if (glm::length(bounds.center()) > kFarFromOrigin * diagonal)
-    findings.push_back(
-        {Severity::warning, "far-from-origin",
-         fmt::format("the scene lies {:.4g} m from the origin, so its corners are "
-                     "only exact to {:.2g} m",
-                     glm::length(bounds.center()), 0x1p-24f * glm::length(bounds.center())),
-         "move it to the origin"});
+}
+
+// Across most of the scene: what lies far outside on any axis is left out.
+float size_of_most(const Geometry& g) {
+  const std::size_t n = g.triangles.size();
+  const std::size_t step = std::max<std::size_t>(1, n / kSampledTriangles);
+  Vec3 extent(0.f);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float> places;
+    for (std::size_t i = 0; i < n; i += step)
+      for (const Vec3& corner : g.corners(TriangleId(i))) places.push_back(corner[axis]);
+    const auto at = [&](double share) {
+      const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(places.size() - 1));
+      std::nth_element(places.begin(), places.begin() + k, places.end());
+      return places[static_cast<std::size_t>(k)];
+    };
+    extent[axis] = at(0.9) - at(0.1);
+  }
+  return glm::length(extent);
 }
 
 void check_fixtures(const Geometry& g, std::vector<Finding>& findings) {
@@ -176,6 +191,17 @@ std::size_t count_duplicate_triangles(const Geometry& g) {
   return duplicates;
 }
 
+std::optional<Finding> far_corners(const Geometry& geometry) {
+  if (geometry.triangles.empty()) return std::nullopt;
+  const float lift = lift_distance(geometry.bounds);
+  if (!(lift > kLargestLift * size_of_most(geometry))) return std::nullopt;
+  return Finding{Severity::warning, "far-from-origin",
+                 fmt::format("corners lie up to {:.4g} m from the origin, so light is lost where "
+                             "surfaces are nearer than {:.2g} m",
+                             geometry.bounds.farthest(), lift),
+                 "move the scene to the origin, or take away what lies far outside of it"};
+}
+
 std::vector<Finding> lint(const Scene& scene, const Geometry& g, const SceneSummary& summary) {
   std::vector<Finding> findings;
   if (g.triangles.empty()) {
@@ -190,6 +216,7 @@ std::vector<Finding> lint(const Scene& scene, const Geometry& g, const SceneSumm
   check_triangles(g, findings);
   check_fixtures(g, findings);
   check_size(g.bounds, findings);
+  if (auto finding = far_corners(g)) findings.push_back(std::move(*finding));
   return findings;
 }
 

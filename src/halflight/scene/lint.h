@@ -1,6 +1,7 @@
 // What is likely wrong with a scene, found before time is spent on lighting it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct Finding {
 // camera-without-place, suspicious-size, far-from-origin.
 std::vector<Finding> lint(const Scene& scene, const Geometry& geometry,
                           const SceneSummary& summary);
+
+// The finding far-from-origin, which costs all of the scene light and shadows.
+std::optional<Finding> far_corners(const Geometry& geometry);
 
 // Triangles that cover exactly the same three points as an earlier one, whichever way round.
 std::size_t count_duplicate_triangles(const Geometry& geometry);
