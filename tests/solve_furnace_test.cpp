@@ -62,5 +62,22 @@ INSTANTIATE_TEST_SUITE_P(Boxes, Furnace,
                                   std::to_string(std::get<1>(test.param));
                          });
 
+// Pale walls face to face send light to and fro for long; rows of more than 1 / reflectance would
+// make it without end.
+TEST(PaleFurnace, ComesToAnEnd) {
+  for (const LinkMaker links : {LinkMaker::refined, LinkMaker::sampled})
+    for (const float reflectance : {0.95f, 0.98f, 0.99f}) {
+      FurnaceParameters furnace;
+      furnace.reflectance = reflectance;
+      const SolverState state =
+          testing::solve(furnace_scene(furnace), testing::options_of(links, 0.2f));
+      EXPECT_LT(state.link_total(), 1'000'000u);
+      // What refined links miss of each bounce, such walls multiply.
+      const float share = mean_irradiance(state) * (1.f - reflectance) / kPi;
+      EXPECT_LT(share, 1.05f) << reflectance;
+      EXPECT_GT(share, links == LinkMaker::sampled ? 0.95f : 0.f) << reflectance;
+    }
+}
+
 }  // namespace
 }  // namespace halflight

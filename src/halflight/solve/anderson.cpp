@@ -60,7 +60,10 @@ void AndersonMixing::mix(SolverState& state) {
     if (known_ > 0) {
       const Rgb mixed =
           found - a * (found - last.irradiance[e]) - b * (found - before.irradiance[e]);
-      state.irradiance[e] = glm::max(mixed, state.given_light[e]);
+      // Where that goes below what there is at least, it has gone astray.
+      const Rgb least = state.given_light[e];
+      for (int c = 0; c < 3; ++c)
+        state.irradiance[e][c] = mixed[c] >= least[c] ? mixed[c] : found[c];
     }
     before.irradiance[e] = found;
     before.change[e] = change;

@@ -165,6 +165,10 @@ void begin_given_light(SolverState& state) {
   update_given_light(state, kInfinity, some, 0.0);
 }
 
+// Of what is emitted: where it all gets lost there still is a threshold, else refinement never
+// ends.
+constexpr float kLeastShareOfGuess = 1e-6f;
+
 // Threshold and tolerances of the level that comes next, by the light that is there now.
 void begin_level(SolverState& state) {
   float mean = 0.f;
@@ -173,7 +177,7 @@ void begin_level(SolverState& state) {
     mean = first_guess_of_irradiance(state);
     pull(state);
   } else {
-    mean = mean_irradiance(state);
+    mean = std::max(mean_irradiance(state), kLeastShareOfGuess * first_guess_of_irradiance(state));
     update_tolerance(state, mean);
     if (state.options.importance) weigh_by_importance(state);
   }

@@ -266,9 +266,10 @@ void push(SolverState& state, SweepPlan& plan) {
 // (translucent ones: of their opacity) bring at most kLargestRow, 1 for sampled links. Weights are
 // estimated one by one, and those of a nook may add up to much more than 1: pale surfaces there
 // would feed each other without end. Sums a little above 1 are noise, and cutting only those would
-// lose energy.
+// lose energy. Above 1 / reflectance a cell would send more than came from all around it.
 float row_limit(const SolverState& state, ElementId e) {
-  const float largest = state.sampled[e] != 0 ? 1.f : kLargestRow;
+  const float reflected = std::max(max_component(state.reflectance[e]), 1e-6f);
+  const float largest = state.sampled[e] != 0 ? 1.f : std::clamp(1.f / reflected, 1.f, kLargestRow);
   return std::min(1.f, largest / std::max(state.irradiance[e].r, 1e-6f));
 }
 
@@ -389,7 +390,7 @@ Sweeps sweep(SolverState& state, int most_sweeps, double largest_change) {
     push(state, plan);
     finish_leaves(state);
     const Change change = change_by_pull(state);
-    done.converged = change.absolute <= largest_change * change.reflected;
+    done.converged = !(change.absolute > largest_change * change.reflected);
     if (accelerated && !done.converged) acceleration.mix(state);
     pull(state);
     ++done.count;
