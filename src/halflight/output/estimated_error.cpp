@@ -67,7 +67,7 @@ std::vector<ReadingPoint> scatter_points(const SolverState& state, std::size_t c
   return points;
 }
 
-ErrorProbes::ErrorProbes(const SolverState& state)
+ErrorProbes::ErrorProbes(const SolverState& state, const Progress& progress)
     : points_(scatter_in_the_open(state, kProbes)), truths_(points_.size()) {
   const PathTracer tracer(*state.world);
   const auto trace = [&](std::size_t i, int paths, std::uint64_t estimate) {
@@ -76,6 +76,7 @@ ErrorProbes::ErrorProbes(const SolverState& state)
   };
   std::vector<float> noise(points_.size());  // of the pilots
   parallel_for(points_.size(), 4, [&](std::size_t i) {
+    if (progress.cancelled()) return;
     const auto pilot = trace(i, kPilotPaths, 59);
     truths_[i] = {pilot.mean, pilot.mean};
     noise[i] = average(pilot.standard_error);
@@ -85,6 +86,7 @@ ErrorProbes::ErrorProbes(const SolverState& state)
   const float wanted =
       kNoiseFloor * state.options.error * std::pow(static_cast<float>(points_.size()), 0.25f);
   parallel_for(points_.size(), 1, [&](std::size_t i) {
+    if (progress.cancelled()) return;
     const float scale = std::max(average(truths_[i].mean()), mean);
     const float excess = scale > 0.f ? noise[i] / (wanted * scale) : 0.f;
     const float enough = static_cast<float>(kPilotPaths) * excess * excess;
@@ -100,18 +102,19 @@ float ErrorProbes::mean_irradiance() const {
   return static_cast<float>(sum / static_cast<double>(std::max<std::size_t>(1, truths_.size())));
 }
 
-EstimatedError ErrorProbes::measure(const SolverState& state) const {
+EstimatedError ErrorProbes::measure(const SolverState& state, const Progress& progress) const {
   EstimatedError error;
   error.mean = mean_irradiance();
   if (points_.empty() || !(error.mean > 0.f)) return error;
-  const std::vector<Reading> readings = SolutionReader(state, sensor_reading(state))(points_);
+  const std::vector<Reading> readings =
+      SolutionReader(state, sensor_reading(state))(points_, progress);
   double squares = 0.0, squared_squares = 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Truth& t = truths_[i];
     const Rgb e = readings[i].irradiance();
     const float scale = std::max(average(t.mean()), error.mean);
     const auto square =
-        static_cast<double>(average((e - t.first) * (e - t.second)) / (scale * scale));
+        static_cast<double>(average((e - t.first) / scale * ((e - t.second) / scale)));
     squares += square;
     squared_squares += square * square;
   }

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "halflight/base/progress.h"
 #include "halflight/output/read_light.h"
 #include "halflight/solve/solver.h"
 
@@ -26,10 +27,11 @@ struct EstimatedError {
 // it needs few paths, as the noise of the paths does not add to it.
 class ErrorProbes {
  public:
-  explicit ErrorProbes(const SolverState& state);
+  // Cancelled, both end early, and what is measured is of no use.
+  explicit ErrorProbes(const SolverState& state, const Progress& progress = Progress());
 
   // Refers to the same scene as that of the constructor.
-  EstimatedError measure(const SolverState& state) const;
+  EstimatedError measure(const SolverState& state, const Progress& progress = Progress()) const;
 
  private:
   struct Truth {

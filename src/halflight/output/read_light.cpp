@@ -127,7 +127,9 @@ IdVector<ElementId, float> variance_of_sampled_light(const SolverState& state) {
 float finest_mesh_edge(const SolverState& state) {
   const float least = kFinestEdge * state.world->geometry.bounds.diagonal();
   const float smallest = std::max(state.feature_sizes[state.tree.root()], least);
-  return 0.5f * std::min(state.options.feature_size, smallest);
+  // Far from the origin, halves of shorter edges would not differ from their ends.
+  return std::max(0.5f * std::min(state.options.feature_size, smallest),
+                  4.f * state.world->rays.lift_distance());
 }
 
 ReadOptions sensor_reading(const SolverState& state) {

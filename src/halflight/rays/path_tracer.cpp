@@ -18,9 +18,9 @@ float power_heuristic(float a, float b) {
   return a * a / (a * a + b * b);
 }
 
-// Far end of a shadow ray: off the light's surface.
-Vec3 shadow_ray_end(const RayScene& rays, const LightSample& s) {
-  return s.density > 0.f ? rays.lift(s.point, s.normal) : s.point;
+// Far end of a shadow ray from p: off the light's surface.
+Vec3 shadow_ray_end(const RayScene& rays, const Vec3& p, const LightSample& s) {
+  return s.density > 0.f ? rays.lift(s.point, s.normal) : rays.lift_towards(s.point, p);
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ Rgb PathTracer::sampled_light(const Vec3& p, const Vec3& n, PathSampler& sampler
   const float u_light = sampler.next_pair().x;
   const auto s = emitters_.sample(p, n, u_light, sampler.next_pair());
   if (!s) return Rgb(0.f);
-  const Vec3 end = shadow_ray_end(world_->rays, *s);
+  const Vec3 end = shadow_ray_end(world_->rays, p, *s);
   if (rays_) return s->irradiance * rays_->from_emitter(p, end, s->triangle);
   float weight = 1.f;
   if (s->density > 0.f) {
@@ -137,7 +137,8 @@ float PathTracer::direct_visibility(const Vec3& point, const Vec3& normal, std::
     if (!s) continue;
     const double light = average(s->irradiance) / static_cast<double>(samples);
     unoccluded += light;
-    hidden += light * (1.0 - world_->rays.transmittance(origin, shadow_ray_end(world_->rays, *s)));
+    hidden += light *
+              (1.0 - world_->rays.transmittance(origin, shadow_ray_end(world_->rays, origin, *s)));
   }
   for (const PunctualLight& light : emitters_.directional()) {
     const float cosine = std::max(0.f, -glm::dot(normal, light.direction));

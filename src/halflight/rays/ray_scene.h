@@ -67,6 +67,11 @@ class RayScene {
   // Lifts a point off its surface, on the side that the unit normal n points to, by more than the
   // rounding error of coordinates of this scene.
   Vec3 lift(const Vec3& p, const Vec3& n) const { return p + n * lift_distance_; }
+  // The same of a light without a surface of its own, towards what it shines at: it may lie in that
+  // of a lamp or a ceiling.
+  Vec3 lift_towards(const Vec3& light, const Vec3& x) const {
+    return light + (x - light) * std::min(1.f, lift_distance_ / glm::distance(x, light));
+  }
   float lift_distance() const { return lift_distance_; }
   // Rays traced so far, of all kinds.
   std::uint64_t ray_total() const;

@@ -390,6 +390,7 @@ std::optional<EmitterPoint> EmitterTree::choose(const Vec3& x, float radius, con
     return sent_to(node, x, std::max(radius, kNearGroup * node.box.diagonal()));
   };
   const ChosenEmitter chosen = choose_below(0, u.z, estimate);
+  if (!(chosen.probability > 0.f)) return std::nullopt;  // too weak for single precision
   EmitterPoint point;
   point.emitter = chosen.emitter;
   const EmittingSide& e = emitters_[point.emitter];

@@ -16,9 +16,11 @@ Rgb punctual_irradiance(const Visibility& visibility, const Vec3& x, const Vec3&
     const Vec3 towards = direction_to(light, x);
     const float cosine = glm::dot(n, towards);
     if (cosine <= 0.f) continue;
-    const float visible = light.kind == Light::Kind::directional
-                              ? visibility.transmittance_to_sky(from, towards, feature_size, 0.f)
-                              : visibility.transmittance({from, light.position, feature_size, 0.f});
+    const float visible =
+        light.kind == Light::Kind::directional
+            ? visibility.transmittance_to_sky(from, towards, feature_size, 0.f)
+            : visibility.transmittance(
+                  {from, world.rays.lift_towards(light.position, from), feature_size, 0.f});
     sum += visible * cosine * e;
   }
   return sum;

@@ -207,7 +207,7 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
     const float choice = (static_cast<float>(k) + to_unit_float(seed)) * share;
     const auto y =
         emitters.choose(c.center(), 0.5f * c.diameter(), Vec3(r2_sequence(k, shift), choice));
-    if (!y) break;
+    if (!y) continue;
     const auto x = facing_point(glm::normalize(y->position - c.center()), seed);
     if (!x) continue;
     const Vec3 between = y->position - *x;
@@ -222,9 +222,10 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
     const Vec3 w = direction_to(lamp, c.center());
     const auto x = facing_point(w, hash(cluster.value, 43));
     if (!x) continue;
-    const float visible = lamp.kind == Light::Kind::directional
-                              ? visibility.transmittance_to_sky(*x, w, s, 0.f)
-                              : visibility.transmittance({*x, lamp.position, s, 0.f});
+    const float visible =
+        lamp.kind == Light::Kind::directional
+            ? visibility.transmittance_to_sky(*x, w, s, 0.f)
+            : visibility.transmittance({*x, world.rays.lift_towards(lamp.position, *x), s, 0.f});
     add(light.from_outside, w, visible * facing_irradiance(lamp, *x));
   }
   if (max_component(world.scene.sky) > 0.f)
