@@ -11,8 +11,8 @@
 namespace halflight {
 
 // Writes beside `path`, then renames over it: a reader sees the old bytes or all of the new ones,
-// also when the program is killed. What is_written_in_place is
-// written to as it is.
+// also when the program is killed or others write the same file. A file that was there keeps its
+// rights, and a link to one stays a link. What is_written_in_place is written to as it is.
 Result<void> write_file_atomically(const std::filesystem::path& path,
                                    std::span<const std::byte> bytes);
 
