@@ -5,9 +5,12 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <new>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <zstd.h>
+#include <zstd_errors.h>
 
 #include "halflight/base/digest.h"
 #include "halflight/base/parallel.h"
@@ -28,6 +31,19 @@ struct FreeCompressor {
 struct FreeDecompressor {
   void operator()(ZSTD_DCtx* d) const { ZSTD_freeDCtx(d); }
 };
+using Compressor = std::unique_ptr<ZSTD_CCtx, FreeCompressor>;
+using Decompressor = std::unique_ptr<ZSTD_DCtx, FreeDecompressor>;
+
+// Each takes its memory when it is made or first used.
+template <class Context>
+Context made(Context context) {
+  if (!context) throw std::bad_alloc();
+  return context;
+}
+bool failed(std::size_t result) {
+  if (ZSTD_getErrorCode(result) == ZSTD_error_memory_allocation) throw std::bad_alloc();
+  return ZSTD_isError(result) != 0;
+}
 
 template <class T>
 void append(Bytes& to, const T& value) {
@@ -123,15 +139,17 @@ void SectionWriter::add_bytes(std::string_view name, std::span<const std::byte> 
   const std::size_t chunks = chunks_of(bytes.size());
   std::vector<Bytes> frames(chunks);
   parallel_ranges(chunks, 4, [&](std::size_t first, std::size_t last) {
-    const std::unique_ptr<ZSTD_CCtx, FreeCompressor> context(ZSTD_createCCtx());
+    const Compressor context = made(Compressor(ZSTD_createCCtx()));
     std::vector<std::byte> sorted(kChunk);
     for (std::size_t c = first; c < last; ++c) {
       const auto chunk = bytes.subspan(c * kChunk, std::min(kChunk, bytes.size() - c * kChunk));
       sort_bytes(chunk.data(), chunk.size(), item, sorted.data());
       Bytes& frame = frames[c];
       frame.resize(ZSTD_compressBound(chunk.size()));
-      frame.resize(ZSTD_compressCCtx(context.get(), frame.data(), frame.size(), sorted.data(),
-                                     chunk.size(), kLevel));
+      const std::size_t packed = ZSTD_compressCCtx(context.get(), frame.data(), frame.size(),
+                                                   sorted.data(), chunk.size(), kLevel);
+      if (failed(packed)) throw std::logic_error(ZSTD_getErrorName(packed));
+      frame.resize(packed);
     }
   });
   Bytes stored;
@@ -245,13 +263,13 @@ Result<void> SectionReader::unpack(const Section& section, const Frames& frames,
                                    std::span<std::byte> to) const {
   std::atomic<bool> intact{true};
   parallel_ranges(frames.size(), 4, [&](std::size_t first, std::size_t last) {
-    const std::unique_ptr<ZSTD_DCtx, FreeDecompressor> context(ZSTD_createDCtx());
+    const Decompressor context = made(Decompressor(ZSTD_createDCtx()));
     std::vector<std::byte> sorted(kChunk);
     for (std::size_t c = first; c < last; ++c) {
       const std::size_t length = length_of_chunk(section.length, c);
       const std::size_t unpacked = ZSTD_decompressDCtx(context.get(), sorted.data(), sorted.size(),
                                                        frames[c].data(), frames[c].size());
-      if (ZSTD_isError(unpacked) != 0 || unpacked != length) {
+      if (failed(unpacked) || unpacked != length) {
         intact = false;
         return;
       }
