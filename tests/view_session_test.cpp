@@ -4,8 +4,10 @@
 #include <future>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
 #include "halflight/io/image_read.h"
@@ -62,6 +64,15 @@ TEST(LightFrames, TellWhatChangedSinceAVersion) {
   EXPECT_EQ(array_of<std::uint32_t>(frames.since(1, second), "light").size(), 0u);
   EXPECT_EQ(array_of<std::uint32_t>(frames.since(7, second), "light").size(), 2000u)
       << "who has another mesh gets everything";
+}
+
+TEST(LightFrames, HaveLightOfNoVerticesWhereNothingIsShown) {
+  LightFrames frames;
+  frames.begin(1);
+  EXPECT_TRUE(frames.since(1, 0).empty()) << "not there yet";
+  frames.add(1, {}, 1.f);
+  ASSERT_FALSE(frames.since(1, 0).empty());
+  EXPECT_EQ(array_of<std::uint32_t>(frames.since(1, 0), "light").size(), 0u);
 }
 
 TEST(LightFrames, KeepFaintAndGlaringLight) {
@@ -216,6 +227,65 @@ TEST(LiveView, TakesAnObjectAwayAndPutsItBack) {
   ASSERT_TRUE(live.wait([](const json& s) { return s["phase"] != "done"; }));
   ASSERT_TRUE(live.done());
   EXPECT_EQ(live.probe_at({1.4f, 1.f, 1.4f}, {0, -1, 0}, false)["node"], 8);
+}
+
+TEST(LiveView, ShowsARoomInWhichNothingIsLeft) {
+  Live live;
+  ASSERT_TRUE(live.done());
+  for (int node = 0; node <= 8; ++node)
+    live.command(fmt::format(R"({{"node": {}, "shown": false}})", node));
+  ASSERT_TRUE(live.wait([](const json& s) { return s["edits"].size() == 9; }));
+  ASSERT_TRUE(live.done());
+  EXPECT_EQ(json_of(*live.session.topology())["triangles"], 0);
+  EXPECT_FALSE(live.session.frames().since(0, 0).empty());
+  live.command(R"({"node": 8, "shown": true})");
+  ASSERT_TRUE(live.wait(
+      [&](const json&) { return json_of(*live.session.topology())["triangles"].get<int>() > 0; }));
+}
+
+// A speck that loses its area in single precision where it is moved to: all triangles after it get
+// other numbers.
+TEST(LiveView, MovesSpecksThatVanish) {
+  QuadScene quads;
+  quads.quad({0, 0, 0}, {1e-7f, 0, 0}, {0, 0, 1e-7f}, quads.material(0.5f));
+  quads.box({0, 0, 0}, {3, 3, 3}, quads.material(0.5f), true);
+  quads.quad({1, 2.9f, 1}, {1, 0, 0}, {0, 0, 1}, quads.material(0.f, 10.f));
+  const std::size_t before = flatten(quads.scene).triangles.size();
+  ASSERT_EQ(before, 16u);
+  Live live(quads.scene);
+  ASSERT_TRUE(live.done());
+  live.command(R"({"node": 0, "offset": [2, 2, 2]})");
+  ASSERT_TRUE(live.wait([](const json& s) { return !s["edits"].empty(); }));
+  ASSERT_TRUE(live.done());
+  EXPECT_LT(live.session.world()->geometry.triangles.size(), before);
+  EXPECT_GT(live.probe_at({0.5f, 1.f, 0.5f}, {0, -1, 0}, true)["irradiance"][0].get<float>(), 0.f);
+  live.command(R"({"node": 0, "offset": [0, 0, 0]})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["phase"] != "done"; }));
+  ASSERT_TRUE(live.done());
+  EXPECT_EQ(live.session.world()->geometry.triangles.size(), before);
+  // So far away that nothing of a room keeps its shape.
+  live.command(R"({"node": 3, "offset": [1e7, 7e6, 3e6]})");
+  ASSERT_TRUE(live.wait([](const json& s) { return s["phase"] != "done"; }));
+  ASSERT_TRUE(live.done());
+}
+
+TEST(LiveView, LeavesObjectsOfFlattenedGroupsWhereTheyAre) {
+  Scene scene = room();
+  Node flat;
+  flat.local = glm::scale(Mat4(1.0), glm::dvec3(1.0, 0.0, 1.0));
+  const NodeId group = scene.nodes.push_back(flat);
+  scene.nodes[NodeId(std::size_t{8})].parent = group;
+  EXPECT_FALSE(can_move(scene, NodeId(std::size_t{8})));
+  EXPECT_TRUE(can_move(scene, group));
+  Live live(scene);
+  ASSERT_TRUE(live.done());
+  const auto move = parse_view_command(R"({"node": 8, "offset": [0.5, 0, 0]})");
+  const auto refused = live.session.command(*move);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().line(), HasSubstr("cannot be moved"));
+  live.command(fmt::format(R"({{"node": {}, "offset": [0.5, 0, 0]}})", group.value));
+  ASSERT_TRUE(live.wait([](const json& s) { return s["edits"].size() == 1; }));
+  ASSERT_TRUE(live.done());
 }
 
 TEST(LiveView, PausesStepsAndKeepsToLimits) {
@@ -390,7 +460,10 @@ TEST(LiveView, GivesTheLitSceneAndAPictureToTakeHome) {
   down.width = 9;
   down.height = 7;
   const auto picture = live.session.ask_copy(
-      [&](const SolutionCopy& copy) { return hdr_picture(copy, down); }, 20.0);
+      [&](const SolutionCopy& copy, const Progress& progress) {
+        return hdr_picture(copy, down, progress);
+      },
+      20.0);
   ASSERT_TRUE(picture) << picture.error().line();
   const auto image = decode_float_image(Bytes(picture->begin(), picture->end()), "view.exr");
   ASSERT_TRUE(image) << image.error().line();
@@ -424,7 +497,7 @@ TEST(LiveView, SolvesOnWhileSomethingIsTakenHome) {
   Live live(room(), 0.02f);
   ASSERT_TRUE(live.wait([](const json& s) { return s.value("version", 0) > 0; }));
   const auto answer = live.session.ask_copy(
-      [&](const SolutionCopy& copy) -> Result<std::string> {
+      [&](const SolutionCopy& copy, const Progress&) -> Result<std::string> {
         const std::size_t iterations = copy.state.history.size();
         const bool goes_on = live.wait(
             [&](const json& s) { return s["iterations"].get<std::size_t>() > iterations + 2; },
@@ -481,6 +554,35 @@ TEST(LiveView, LeavesNobodyWaitingForAnAnswer) {
   ASSERT_FALSE(answer);
   EXPECT_THAT(answer.error().line(), HasSubstr("mend it"));
   EXPECT_LT(Clock::now() - start, std::chrono::seconds(10));
+}
+
+// A picture that takes half a minute ends with the view, and those that wait for their turn.
+TEST(LiveView, EndsInTheMiddleOfDownloads) {
+  Live live;
+  ASSERT_TRUE(live.done());
+  ViewOfInterest large;
+  large.camera.position = {1.4f, 2.f, 1.4f};
+  large.camera.forward = {0, -1, 0};
+  large.camera.up = {0, 0, 1};
+  large.width = large.height = kLargestPicture;
+  std::vector<std::future<Result<std::string>>> downloads;
+  for (int i = 0; i < 3; ++i)
+    downloads.push_back(std::async(std::launch::async, [&] {
+      return live.session.ask_copy(
+          [&](const SolutionCopy& copy, const Progress& progress) {
+            return hdr_picture(copy, large, progress);
+          },
+          60.0);
+    }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto start = Clock::now();
+  live.session.stop();
+  for (auto& download : downloads) {
+    const auto answer = download.get();
+    ASSERT_FALSE(answer);
+    EXPECT_THAT(answer.error().line(), HasSubstr("has ended"));
+  }
+  EXPECT_LT(Clock::now() - start, std::chrono::seconds(5));
 }
 
 TEST(LiveView, EndsInTheMiddleOfAnything) {

@@ -47,7 +47,24 @@ Result<ViewPlan> plan_of(const SolveArguments& arguments) {
   return result;
 }
 
-// Serves until the user ends it, or there is nothing to serve.
+// Until the user ends it, or there is nothing to serve.
+Result<void> wait_for_end(const ViewSession& session, const LoopbackServer& server) {
+  using Clock = std::chrono::steady_clock;
+  Progress progress;
+  const Interruptible interruptible(progress);
+  std::optional<Clock::time_point> failed;
+  while (!progress.cancelled()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    if (!server.is_open())
+      return system_error("the system lets no more connections be opened", server.url(),
+                          "close other programs, and start the live view again");
+    if (!failed && session.failure()) failed = Clock::now();
+    if (failed && Clock::now() - *failed > std::chrono::duration<double>(kSecondsToTellOfFailure))
+      return tl::unexpected(*session.failure());
+  }
+  return {};
+}
+
 Result<void> serve(const LiveViewArguments& arguments) {
   if (!arguments.token.empty() && !is_token(arguments.token))
     return input_error("a token has 16 to 64 letters, digits, - or _", "--token",
@@ -68,17 +85,9 @@ Result<void> serve(const LiveViewArguments& arguments) {
     return system_error("the page's address cannot be written to the standard output", "",
                         "check that there is room");
 
-  Progress progress;
-  const Interruptible interruptible(progress);
-  std::optional<std::chrono::steady_clock::time_point> failed;
-  while (!progress.cancelled()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    if (!failed && session.failure()) failed = std::chrono::steady_clock::now();
-    if (failed && std::chrono::steady_clock::now() - *failed >
-                      std::chrono::duration<double>(kSecondsToTellOfFailure))
-      return tl::unexpected(*session.failure());
-  }
-  return {};
+  Result<void> ended = wait_for_end(session, **server);
+  session.stop();
+  return ended;
 }
 
 }  // namespace

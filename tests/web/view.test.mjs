@@ -279,6 +279,60 @@ test('lamps dim, objects move and vanish, and the light follows', async () => {
   assert.deepEqual(page.complaints, [])
 })
 
+test('a room in which nothing is left is shown, and what is put back', async () => {
+  const there = await serve(scene('furnace'))
+  const room = await open(browser, there.url)
+  await lit(room)
+  await settled(room)
+  const nodes = await room.evaluate(() => window.halflight.stage.header.nodes.map((n) => n.id))
+  assert.ok(nodes.length > 0)
+  const show = (shown, which) => room.evaluate(async ({ shown, which }) => {
+    for (const node of which) await window.halflight.actions.act({ node, shown })
+  }, { shown, which })
+  let asked = 0
+  room.on('request', () => ++asked)
+  await show(false, nodes)
+  await until(room, 'an empty picture', () => window.halflight.stage.header.triangles === 0, 20)
+  await settled(room)
+  await room.waitForTimeout(500)
+  asked = 0
+  await room.waitForTimeout(1000)
+  assert.ok(asked < 5, `${asked} requests in a second of quiet`)
+  await show(true, nodes.slice(0, 1))
+  await until(room, 'an object', () => window.halflight.stage.header.triangles > 0, 20)
+  assert.deepEqual(room.complaints, [])
+  await room.context().close()
+  await there.stop()
+})
+
+test('names are only names', async () => {
+  const positions = Buffer.from(new Float32Array([0, 0, 0, 2, 0, 0, 0, 2, 0]).buffer)
+  const named = join(folder, 'names.gltf')
+  const camera = { name: 'first view', type: 'perspective', perspective: { yfov: 0.8, znear: 0.1 } }
+  const triangle = (material) => ({ primitives: [{ attributes: { POSITION: 0 }, material }] })
+  writeFileSync(named, JSON.stringify({
+    asset: { version: '2.0' },
+    scenes: [{ nodes: [0, 1, 2, 3] }],
+    nodes: [{ mesh: 0, name: '<img src=x>' }, { mesh: 1, translation: [0, 0, 1] }, { camera: 0, translation: [1, 1, 5] }, { camera: 0, translation: [1, 1, 6] }],
+    cameras: [camera],
+    materials: [{ doubleSided: true, emissiveFactor: [1, 1, 1], name: '__proto__' }, { doubleSided: true }],
+    meshes: [triangle(0), triangle(1)],
+    accessors: [{ bufferView: 0, componentType: 5126, count: 3, type: 'VEC3', min: [0, 0, 0], max: [2, 2, 0] }],
+    bufferViews: [{ buffer: 0, byteLength: 36 }],
+    buffers: [{ byteLength: 36, uri: `data:application/octet-stream;base64,${positions.toString('base64')}` }],
+  }))
+  const there = await serve(named)
+  const named_page = await open(browser, there.url)
+  await lit(named_page)
+  await setNumber(named_page, '__proto__', 0.5)
+  await until(named_page, 'half the light', () => window.halflight.status().groups[0].factor.every((f) => f === 0.5), 10)
+  const cameras = await control(named_page, 'camera').locator('option').allTextContents()
+  assert.deepEqual(cameras, ['first view', 'first view 2', 'first view 3'])
+  assert.deepEqual(named_page.complaints, [])
+  await named_page.context().close()
+  await there.stop()
+})
+
 test('the solve is steered: pause, step, feature size, visibility, error, limits, refine here', async () => {
   await settled(page)
   // Paused before there is anything to do: however fast the machine, steps are left.

@@ -61,7 +61,7 @@ export function makePanel(container: HTMLElement, parts: Parts): Panel {
 
   const lights = gui.addFolder('Lights')
   // Of each group: how bright its brightest channel is, and its colour then.
-  const factors: Record<string, number> = {}
+  const factors: Record<string, number> = Object.create(null) // by names that are any words
   const tints = new Map<string, HTMLInputElement>()
   let lightNames = ''
   const factor = (name: string) => {
@@ -156,7 +156,12 @@ export function makePanel(container: HTMLElement, parts: Parts): Panel {
   return {
     follow(header) {
       cameras = new Map<string, any>([['first view', header.firstView]])
-      header.cameras.forEach((c: any, i: number) => cameras.set(c.name || `camera ${i + 1}`, c))
+      header.cameras.forEach((c: any, i: number) => {
+        const name = c.name || `camera ${i + 1}`
+        let label = name
+        for (let k = 2; cameras.has(label); ++k) label = `${name} ${k}`
+        cameras.set(label, c)
+      })
       camera = camera.options([...cameras.keys()]).name('camera').onChange(onCamera)
       objects()
     },

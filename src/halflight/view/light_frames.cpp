@@ -47,6 +47,7 @@ std::uint64_t LightFrames::add(std::uint32_t epoch, std::span<const Rgb> irradia
   }
   auto next = std::make_shared<Frame>();
   next->epoch = epoch;
+  next->has_light = true;
   next->version = before->version + 1;
   next->exposure = exposure;
   next->scale = scale_for(irradiance, before->scale);
@@ -74,7 +75,7 @@ std::string LightFrames::since(std::uint32_t epoch, std::uint64_t version) const
     const std::lock_guard lock(mutex_);
     frame = frame_;
   }
-  if (frame->light.empty()) return {};
+  if (!frame->has_light) return {};
   const bool all = epoch != frame->epoch;
   std::vector<std::uint32_t> ranges, light;  // first vertex and count of each range
   for (std::size_t b = 0; b < frame->last_changes.size(); ++b) {

@@ -29,6 +29,7 @@ class LightFrames {
  private:
   struct Frame {
     std::uint32_t epoch = 0;
+    bool has_light = false;  // that of no vertices, where nothing is shown
     std::uint64_t version = 0;
     float exposure = 1.f;
     float scale = 0.f;  // a power of two near the mean irradiance, as floats of 5 bits span little

@@ -89,6 +89,18 @@ bool LiveScene::dimmed() const {
   return std::any_of(factors.begin(), factors.end(), [](const Rgb& f) { return f != Rgb(1.f); });
 }
 
+bool can_move(const Scene& scene, NodeId node) {
+  constexpr double kMostOff = 1e-6;
+  Mat4 above(1.0);
+  for (NodeId n = scene.nodes[node].parent; n.valid(); n = scene.nodes[n].parent)
+    above = scene.nodes[n].local * above;
+  above = scene.to_world * above;
+  const Mat4 off = glm::inverse(above) * above - Mat4(1.0);
+  for (int column = 0; column < 4; ++column)
+    if (!glm::all(glm::lessThan(glm::abs(off[column]), glm::dvec4(kMostOff)))) return false;
+  return true;
+}
+
 Scene edited(Scene scene, const std::map<NodeId, SceneEdit>& edits) {
   const auto global = global_transforms(scene);
   for (const auto& [id, edit] : edits) {

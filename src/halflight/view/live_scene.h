@@ -30,6 +30,9 @@ struct LiveScene {
   bool dimmed() const;
 };
 
+// Whether a node can be moved in world space: not where a node above leaves it no size along some
+// axis.
+bool can_move(const Scene& scene, NodeId node);
 // The scene with nodes moved in world space, or without what they show.
 Scene edited(Scene scene, const std::map<NodeId, SceneEdit>& edits);
 

@@ -151,8 +151,8 @@ thread_local BoundedStream* t_stream = nullptr;
 // A thread for each connection that may be open; the others are refused at once.
 class ConnectionQueue final : public httplib::TaskQueue {
  public:
-  ConnectionQueue(std::size_t most, std::atomic<std::size_t>& open)
-      : most_(most), open_(open), pool_(most) {}
+  ConnectionQueue(std::size_t most, std::atomic<std::size_t>& open, std::atomic<bool>& stopping)
+      : most_(most), open_(open), stopping_(stopping), pool_(most) {}
 
   void enqueue(std::function<void()> serve) override {
     if (open_ >= most_) {
@@ -167,11 +167,17 @@ class ConnectionQueue final : public httplib::TaskQueue {
       --open_;
     });
   }
-  void shutdown() override { pool_.shutdown(); }
+  // The library calls this once it accepts no more connections, whether it was asked to stop or the
+  // system has failed it.
+  void shutdown() override {
+    stopping_ = true;
+    pool_.shutdown();
+  }
 
  private:
   std::size_t most_;
   std::atomic<std::size_t>& open_;
+  std::atomic<bool>& stopping_;
   httplib::ThreadPool pool_;
 };
 
@@ -197,7 +203,7 @@ std::string error_json(const std::string& text) {
 struct LoopbackServer::Impl final : private httplib::Server {
   Impl(std::string secret, LoopbackServer::Handler on_request, const WebLimits& wanted)
       : token(std::move(secret)), handler(std::move(on_request)), limits(wanted) {
-    new_task_queue = [this] { return new ConnectionQueue(limits.connections, open); };
+    new_task_queue = [this] { return new ConnectionQueue(limits.connections, open, stopping); };
     // The library's default lets another process bind the same port beside this one.
     set_socket_options([](int s) {
       const int yes = 1;
@@ -387,6 +393,7 @@ int LoopbackServer::port() const { return impl_->port; }
 std::string LoopbackServer::url() const {
   return fmt::format("http://{}:{}/{}/", kLoopback, impl_->port, impl_->token);
 }
+bool LoopbackServer::is_open() const { return !impl_->stopping; }
 std::size_t LoopbackServer::open_connections() const { return impl_->open; }
 
 std::string random_token() {

@@ -60,6 +60,7 @@ class LoopbackServer {
 
   int port() const;
   std::string url() const;  // with the token
+  bool is_open() const;     // false: the system lets it accept no more connections, all are closed
   std::size_t open_connections() const;
 
  private:

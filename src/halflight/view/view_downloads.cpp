@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 
 #include <unistd.h>
 
 #include "halflight/io/image_write.h"
+#include "halflight/io/read_file.h"
 #include "halflight/io/write_gltf.h"
 #include "halflight/output/exposure.h"
 #include "halflight/output/read_light.h"
@@ -23,9 +22,10 @@ constexpr int kSamplesPerPixel = 4;
 class PrivateFolder {
  public:
   PrivateFolder() {
-    std::error_code ignored;
-    std::string pattern =
-        (std::filesystem::temp_directory_path(ignored) / "halflight-XXXXXX").string();
+    std::error_code failure;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(failure);
+    if (failure) return;
+    std::string pattern = (folder / "halflight-XXXXXX").string();
     if (::mkdtemp(pattern.data())) path_ = pattern;
   }
   ~PrivateFolder() {
@@ -45,11 +45,13 @@ template <class Write>
 Result<std::string> bytes_of(const char* name, const Write& write) {
   const PrivateFolder folder;
   if (folder.path().empty())
-    return system_error("no temporary folder can be made", "live view", "free some disk space");
+    return system_error("no temporary folder can be made", "live view",
+                        "free some disk space, or let TMPDIR name a folder");
   const std::filesystem::path file = folder.path() / name;
   if (Result<void> written = write(file); !written) return tl::unexpected(written.error());
-  std::ifstream in(file, std::ios::binary);
-  return std::string(std::istreambuf_iterator<char>(in), {});
+  const auto bytes = read_file(file);
+  if (!bytes) return tl::unexpected(bytes.error());
+  return std::string(as_text(*bytes));
 }
 
 LitMeshOptions mesh_options(const SolverState& state) {
@@ -59,20 +61,21 @@ LitMeshOptions mesh_options(const SolverState& state) {
   return options;
 }
 
-LitMesh sharp_mesh(const SolverState& state) {
+LitMesh sharp_mesh(const SolverState& state, const Progress& progress) {
   const SolutionReader reader(state, kMeshReading);
   return build_lit_mesh(
       state.world->scene, state.world->geometry,
-      [&](std::span<const ReadingPoint> points) { return reader(points); }, mesh_options(state));
+      [&](std::span<const ReadingPoint> points) { return reader(points, progress); },
+      mesh_options(state), progress);
 }
 
 }  // namespace
 
-Result<std::string> lit_glb(const SolutionCopy& solution) {
+Result<std::string> lit_glb(const SolutionCopy& solution, const Progress& progress) {
   const SolverState& state = solution.state;
   const World& world = *state.world;
   std::optional<LitMesh> made;
-  if (!solution.sharp) made = sharp_mesh(state);
+  if (!solution.sharp) made = sharp_mesh(state, progress);
   const LitMesh& mesh = solution.sharp ? *solution.sharp : *made;
   const float exposure = automatic_exposure(world.scene, world.geometry, mesh.primitives);
   return bytes_of("lit.glb", [&](const std::filesystem::path& file) {
@@ -80,13 +83,14 @@ Result<std::string> lit_glb(const SolutionCopy& solution) {
   });
 }
 
-Result<std::string> hdr_picture(const SolutionCopy& solution, const ViewOfInterest& view) {
+Result<std::string> hdr_picture(const SolutionCopy& solution, const ViewOfInterest& view,
+                                const Progress& progress) {
   const SolverState& state = solution.state;
   const int width = std::min(view.width, kLargestPicture);
   const int height = std::min(view.height, kLargestPicture);
   const Image image =
       solution_image(state, mesh_options(state), CameraRays(view.camera, width, height), width,
-                     height, kSamplesPerPixel, Progress());
+                     height, kSamplesPerPixel, progress);
   return bytes_of("view.exr",
                   [&](const std::filesystem::path& file) { return write_image(file, image); });
 }

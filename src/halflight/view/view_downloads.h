@@ -7,11 +7,12 @@
 
 namespace halflight {
 
-// As `halflight solve -o` writes it.
-Result<std::string> lit_glb(const SolutionCopy& solution);
+// As `halflight solve -o` writes it. Of no use once cancelled.
+Result<std::string> lit_glb(const SolutionCopy& solution, const Progress& progress);
 
 // OpenEXR, as `halflight render` writes it. At most kLargestPicture pixels on a side.
 inline constexpr int kLargestPicture = 2048;
-Result<std::string> hdr_picture(const SolutionCopy& solution, const ViewOfInterest& view);
+Result<std::string> hdr_picture(const SolutionCopy& solution, const ViewOfInterest& view,
+                                const Progress& progress);
 
 }  // namespace halflight

@@ -139,11 +139,12 @@ WebReply lit_scene(ViewSession& session) {
 WebReply picture(ViewSession& session, const WebRequest& request) {
   const auto view = parse_view_of_interest(request.body);
   if (!view) return error_reply(view.error());
-  WebReply reply =
-      reply_of(session.ask_copy(
-                   [&view](const SolutionCopy& solution) { return hdr_picture(solution, *view); },
-                   kLayerSeconds),
-               "image/x-exr");
+  WebReply reply = reply_of(session.ask_copy(
+                                [&view](const SolutionCopy& solution, const Progress& progress) {
+                                  return hdr_picture(solution, *view, progress);
+                                },
+                                kLayerSeconds),
+                            "image/x-exr");
   if (reply.status == 200) reply.download_name = "view.exr";
   return reply;
 }

@@ -82,13 +82,18 @@ ViewSession::ViewSession(Loader load, ViewPlan plan)
 }
 
 ViewSession::~ViewSession() {
+  stop();
+  thread_.join();
+}
+
+void ViewSession::stop() {
   {
     const std::lock_guard lock(mutex_);
     stop_ = true;
     if (solving_progress_) solving_progress_->cancel();
   }
+  copying_progress_.cancel();
   changed_.notify_all();
-  thread_.join();
 }
 
 std::string ViewSession::status() const {
@@ -156,6 +161,9 @@ Result<void> ViewSession::check(const ViewCommand& command) const {
   if (!world_) return input_error("the scene is not there yet", "live view", "wait a moment");
   if (command.node.valid() && !world_->scene.nodes.contains(command.node))
     return input_error("there is no such node", "live view", "reload the page");
+  if (command.offset && !can_move(world_->scene, command.node))
+    return input_error("this object cannot be moved: what it belongs to has no size along an axis",
+                       "live view", "move an object above it");
   return {};
 }
 
@@ -206,16 +214,19 @@ Result<std::string> ViewSession::ask(Question question, double seconds) {
   }
 }
 
-Result<std::string> ViewSession::ask_copy(
-    const std::function<Result<std::string>(const SolutionCopy&)>& question, double seconds) {
-  const std::lock_guard one_at_a_time(copying_);
+Result<std::string> ViewSession::ask_copy(const LongQuestion& question, double seconds) {
+  const std::unique_lock one_at_a_time(copying_, std::chrono::duration<double>(seconds));
+  if (!one_at_a_time)
+    return system_error("other files are being made", "live view", "try again in a moment");
   auto copy = std::make_shared<std::optional<SolutionCopy>>();
   const auto take = [this, copy](LiveSolution& live) -> Result<std::string> {
     copy->emplace(SolutionCopy{*live.scene.state, sharp_});
     return std::string();
   };
   if (auto taken = ask(take, seconds); !taken) return taken;
-  return question(**copy);
+  auto answer = question(**copy, copying_progress_);
+  if (copying_progress_.cancelled()) return system_error("the live view has ended", "live view");
+  return answer;
 }
 
 // The solver's thread from here on.
@@ -448,8 +459,13 @@ void ViewSession::apply(const ViewCommand& command) {
       show(*even_);
       if (had_light) frames_.add(epoch_, light, exposure_);
       publish_status();
+      const auto before = live_.world;
       follow_edits(live_, {command.node});
-      even_->draft.restart(*live_.world);
+      // Triangles may have lost their area in single precision, or got one.
+      if (std::ranges::equal(before->geometry.triangles, live_.world->geometry.triangles))
+        even_->draft.restart(*live_.world);
+      else
+        cut_anew();
     } else {
       follow_edits(live_, {command.node});
       cut_anew();
@@ -656,7 +672,10 @@ void ViewSession::sharpen() {
         },
         options, progress);
     if (!progress.cancelled()) result.mesh = std::move(mesh);
-    if (!progress.cancelled()) result.error = ErrorProbes(state).measure(state);
+    if (!progress.cancelled()) {
+      const EstimatedError error = ErrorProbes(state, progress).measure(state, progress);
+      if (!progress.cancelled()) result.error = error;
+    }
     {
       const std::lock_guard lock(mutex_);
       sharpened_ready_ = true;

@@ -75,9 +75,13 @@ class ViewSession {
   Result<void> command(ViewCommand command);
   // Waits for the answer; an error when it takes longer than `seconds`.
   Result<std::string> ask(Question question, double seconds);
-  // The same for what takes long: works on a copy, on the thread that asks, one at a time.
-  Result<std::string> ask_copy(
-      const std::function<Result<std::string>(const SolutionCopy&)>& question, double seconds);
+  // The same for what takes long: works on a copy, on the thread that asks, one at a time. An error
+  // when it has to wait for its turn, or for the copy, longer than `seconds`.
+  using LongQuestion = std::function<Result<std::string>(const SolutionCopy&, const Progress&)>;
+  Result<std::string> ask_copy(const LongQuestion& question, double seconds);
+
+  // Ends all work soon, also that of questions; they are answered by errors from here on.
+  void stop();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -155,7 +159,8 @@ class ViewSession {
   std::unique_ptr<Progress> sharpening_progress_;
   std::unique_ptr<Sharpened> sharpened_result_;
 
-  std::mutex copying_;                         // held while somebody looks at a copy
+  std::timed_mutex copying_;                   // held while somebody looks at a copy
+  Progress copying_progress_;                  // cancelled at the end
   std::atomic<Clock::rep> give_way_until_{0};  // ticks of the clock
 
   mutable std::mutex mutex_;
