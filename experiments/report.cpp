@@ -38,14 +38,19 @@ Result<void> write_report(const std::filesystem::path& folder, std::span<const S
   std::filesystem::create_directories(folder, failure);
   if (failure)
     return system_error("the folder cannot be made: " + failure.message(), folder.string());
-  for (const Section& section : sections)
-    if (auto written = write_pictures(folder, section); !written) return written;
-  const Result<std::string> html = html_page(folder, sections);
-  if (!html) return tl::unexpected(html.error());
-  if (auto written = write_text(folder / "report.html", *html); !written) return written;
-  if (auto written = write_text(folder / "report.md", markdown_page(sections)); !written)
-    return written;
-  return write_text(folder / "numbers.json", numbers_of(sections));
+  // What cannot be written keeps nothing else from being written.
+  Result<void> written;
+  const auto also = [&](const Result<void>& next) {
+    if (written) written = next;
+  };
+  for (const Section& section : sections) also(write_pictures(folder, section));
+  if (const Result<std::string> html = html_page(folder, sections))
+    also(write_text(folder / "report.html", *html));
+  else
+    also(tl::unexpected(html.error()));
+  also(write_text(folder / "report.md", markdown_page(sections)));
+  also(write_text(folder / "numbers.json", numbers_of(sections)));
+  return written;
 }
 
 }  // namespace halflight::experiments

@@ -46,7 +46,7 @@ TEST_F(CheckpointCommand, KilledAndResumedGivesTheSameBytes) {
     for (std::uint64_t k = 0; k < 1 + i % 2; ++k) {
       const auto delay = std::chrono::milliseconds(
           static_cast<int>(static_cast<float>(took.count()) * to_unit_float(hash(i, k))));
-      if (run_and_signal(solve("part") + " --resume", SIGKILL, delay) == -1) ++killed;
+      if (run_and_signal(solve("part") + " --resume", {SIGKILL}, delay) == -1) ++killed;
     }
     ASSERT_EQ(run(solve("part") + " --resume"), 0) << text("err");
     EXPECT_EQ(text("part.txt"), text("whole.txt"));
@@ -64,12 +64,22 @@ TEST_F(CheckpointCommand, InterruptedAndResumedGivesTheSameBytes) {
   int status = 0;
   for (int attempt = 0; attempt < 8 && status != 3; ++attempt) {
     delay = delay * 3 / 4;
-    status = run_and_signal(solve("part"), SIGINT, delay);
+    status = run_and_signal(solve("part"), {SIGINT}, delay);
   }
   ASSERT_EQ(status, 3);
   ASSERT_EQ(run(solve("part") + " --resume"), 0) << text("err");
   EXPECT_EQ(text("part.txt"), text("whole.txt"));
   EXPECT_TRUE(text("part.ckpt") == text("whole.ckpt"));
+}
+
+TEST_F(CheckpointCommand, ASolutionStaysUntilThereIsAnother) {
+  ASSERT_EQ(run(solve("part")), 0) << text("err");
+  // Killed before its first light, or a while after.
+  for (const int milliseconds : {20, 60, 120}) {
+    run_and_signal("solve box.glb --feature-size 5mm --progress none --checkpoint part.ckpt",
+                   {SIGKILL}, std::chrono::milliseconds(milliseconds));
+    EXPECT_EQ(run("sample part.ckpt --points points.txt"), 0) << text("err");
+  }
 }
 
 TEST_F(CheckpointCommand, LitSceneOfAResumedSolveIsTheSame) {

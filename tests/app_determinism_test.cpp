@@ -131,7 +131,7 @@ TEST_P(CommandDeterminism, InterruptedAndResumedIsTheSame) {
   int interrupted = 0;
   const int times = GetParam().interruptions;
   for (int i = 0; i < times; ++i) {
-    interrupted += run_and_signal(solve("part", 1), SIGINT,
+    interrupted += run_and_signal(solve("part", 1), {SIGINT},
                                   std::chrono::duration_cast<std::chrono::milliseconds>(
                                       took * (2 * i + 1) / (2 * times))) == 3;
     expect_light(solve("part", 2) + " --resume");

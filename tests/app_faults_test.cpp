@@ -7,9 +7,11 @@
 #include <atomic>
 #include <cmath>
 #include <map>
+#include <thread>
 
 #include "gltf_check.h"
 #include "halflight/base/hash.h"
+#include "halflight/io/atomic_file.h"
 #include "limited_run.h"
 #include "room_command.h"
 #include "sanitized.h"
@@ -176,6 +178,102 @@ TEST_F(Faults, OneOutputThatFailsKeepsNoOtherFromBeingWritten) {
       EXPECT_EQ(fs::exists(path(file)), !checkpoint && name(file) == std::string(file))
           << full << ", " << file;
   }
+}
+
+TEST_F(Faults, OneOutputThatFailsKeepsNoOtherOfAnyCommand) {
+  keep();
+  for (const char* full : {"full.txt", "full.glb", "full.png", "full.exr"})
+    fs::create_symlink("/dev/full", path(full));
+  struct Case {
+    std::string command;
+    std::vector<const char*> written;
+  };
+  for (const Case& c : std::vector<Case>{
+           {"sample kept --points sensors.txt --points-out full.txt -o a.glb", {"a.glb"}},
+           {"mix kept --points sensors.txt --points-out full.txt -o b.glb", {"b.glb"}},
+           {kSolve + "--lightmap 64 -o full.glb", {"full.lightmap.exr", "full.lightmap.png"}},
+           {"render kept" + kView + "-o full.png --visibility-mask c.png --mask-samples 2",
+            {"c.png"}},
+           {"compare kept.png kept.png --feature-size 4 --difference full.exr --mask d.png "
+            "--false-colour e.png",
+            {"d.png", "e.png"}}}) {
+    EXPECT_EQ(run(c.command), kSystemFailure) << c.command;
+    EXPECT_THAT(text("err"), HasSubstr("full.")) << c.command;
+    for (const char* file : c.written) EXPECT_TRUE(fs::exists(path(file))) << c.command;
+  }
+  EXPECT_THAT(text("out"), HasSubstr("FBEM")) << "what compare prints is an output, too";
+}
+
+TEST_F(Faults, FilesKeepTheirRightsAndLinksWhatTheyLeadTo) {
+  folder_.write("private.glb", "what was there");
+  fs::permissions(path("private.glb"), fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_directory(path("elsewhere"));
+  folder_.write("elsewhere/real.glb", "what was there");
+  fs::create_symlink("elsewhere/real.glb", path("link.glb"));
+  ASSERT_EQ(run("scene cornell-box -o private.glb"), 0) << text("err");
+  ASSERT_EQ(run("scene cornell-box -o link.glb"), 0) << text("err");
+  EXPECT_EQ(fs::status(path("private.glb")).permissions(),
+            fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_TRUE(fs::is_symlink(path("link.glb")));
+  EXPECT_EQ(text("elsewhere/real.glb"), text("private.glb"));
+  EXPECT_EQ(text("elsewhere/real.glb").substr(0, 4), "glTF");
+  expect_nothing_unfinished();
+}
+
+// As by containers that share a folder: each thinks it has the first process number.
+TEST_F(Faults, WritersOfTheSameFileDoNotMeet) {
+  ASSERT_EQ(run("scene cornell-box -o box.glb"), 0) << text("err");
+  ASSERT_EQ(run("scene furnace -o furnace.glb"), 0) << text("err");
+  const std::array<std::string, 2> whole{text("box.glb"), text("furnace.glb")};
+  std::vector<std::thread> writers;
+  for (const std::string& bytes : whole)
+    writers.emplace_back([&] {
+      for (int i = 0; i < 50; ++i) {
+        EXPECT_TRUE(check_writable(path("same.glb")));
+        EXPECT_TRUE(write_text_atomically(path("same.glb"), bytes));
+        EXPECT_THAT(text("same.glb"), AnyOf(whole[0], whole[1]));
+      }
+    });
+  for (std::thread& writer : writers) writer.join();
+  expect_nothing_unfinished();
+}
+
+class FailingCalls : public Faults {
+ protected:
+  void SetUp() override {
+    Faults::SetUp();
+    if (kSanitized) GTEST_SKIP() << "sanitizers have to be loaded first";
+  }
+  int run_failing(const std::string& arguments, const char* request = nullptr) const {
+    return run_under(
+        [&] {
+          return setenv("LD_PRELOAD", HALFLIGHT_FAILING_CALLS, 1) == 0 &&
+                 (!request || setenv("FAILING_ZSTD", request, 1) == 0);
+        },
+        arguments);
+  }
+};
+
+TEST_F(FailingCalls, MemoryThatCheckpointsLackIsToldInOneLine) {
+  keep();
+  for (const char* request : {"1", "2", "3"}) {
+    EXPECT_EQ(run_failing(kSolve + "--checkpoint new", request), kSystemFailure) << request;
+    EXPECT_THAT(text("err"), HasSubstr("memory"));
+    expect_one_line();
+  }
+  for (const char* request : {"1", "2"}) {
+    EXPECT_EQ(run_failing("sample kept --points sensors.txt", request), kSystemFailure) << request;
+    EXPECT_THAT(text("err"), HasSubstr("memory"));
+    expect_one_line();
+  }
+  EXPECT_EQ(run_failing("sample kept --points sensors.txt"), 0) << text("err");
+  expect_nothing_unfinished();
+}
+
+TEST_F(FailingCalls, PageThatCannotBeServedEndsTheLiveView) {
+  EXPECT_EQ(run_failing("view room.obj"), kSystemFailure);
+  EXPECT_THAT(text("err"), HasSubstr("connections"));
+  expect_one_line();
 }
 
 TEST_F(Faults, LightmapThatDoesNotFitLeavesThePicturesThatWereThere) {

@@ -296,8 +296,23 @@ class LongSolve : public SolveCommand {
 };
 
 TEST_F(LongSolve, InterruptedWritesAValidResult) {
-  EXPECT_EQ(run_and_signal(kLong, SIGINT, std::chrono::milliseconds(1500)), 3);
+  EXPECT_EQ(run_and_signal(kLong, {SIGINT}, std::chrono::milliseconds(1500)), 3);
   expect_valid_light();
+}
+
+// The second one is of the other kind, as after Ctrl-C a stop from elsewhere.
+TEST_F(LongSolve, InterruptedTwiceEndsAtOnce) {
+  EXPECT_EQ(run_and_signal(kLong, {SIGINT, SIGTERM}, std::chrono::milliseconds(1500)), -1);
+  EXPECT_EQ(run_and_signal(kLong, {SIGTERM, SIGINT}, std::chrono::milliseconds(1500)), -1);
+  EXPECT_FALSE(fs::exists(path("report.json")));
+}
+
+TEST_F(LongSolve, SignalsThatAreIgnoredStaySo) {
+  const std::string command = "(trap '' INT; cd '" + folder_.path().string() +
+                              "'; '" HALFLIGHT_BINARY "' " + kLong +
+                              " --time 2s & sleep 1; kill -INT $!; wait $!)";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 4) << "the deadline has ended it";
 }
 
 TEST_F(LongSolve, DeadlineWritesAValidResult) {

@@ -93,17 +93,19 @@ class RoomCommand : public ::testing::Test {
     const int status = std::system(line.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
-  // The same, with a signal after `delay`; -1: the signal ended it.
-  int run_and_signal(const std::string& arguments, int signal, std::chrono::milliseconds delay) {
+  // The same, with signals after `delay`; -1: one of them ended it.
+  int run_and_signal(const std::string& arguments, std::initializer_list<int> signals,
+                     std::chrono::milliseconds delay) {
     const std::string line = "cd '" + folder_.path().string() +
                              "' && exec '" HALFLIGHT_BINARY "' " + arguments + " >out 2>err";
     const pid_t child = fork();
     if (child == 0) {
+      for (const int signal : signals) std::signal(signal, SIG_DFL);  // this test may ignore them
       execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
       _exit(127);
     }
     std::this_thread::sleep_for(delay);
-    kill(child, signal);
+    for (const int signal : signals) kill(child, signal);
     int status = 0;
     waitpid(child, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;

@@ -19,6 +19,9 @@ void add_checkpoint_arguments(CLI::App& command, CheckpointArguments& arguments)
 Result<SolverState> restore(const Checkpoint& checkpoint,
                             const std::shared_ptr<const World>& world) {
   Result<SolverState> state = checkpoint.restore(world);
+  if (state && state->history.empty())
+    return input_error("the checkpoint holds no light yet: its solve ended too early",
+                       checkpoint.path().string(), "go on with solve --checkpoint FILE --resume");
   if (state && !state->grouped.groups.empty() && !state->grouped.separated()) separate(*state, {});
   return state;
 }

@@ -24,6 +24,9 @@ enum ExitStatus {
 int fail(const Error& error);
 // Prints a warning of one line to stderr.
 void warn(const std::string& text);
+// Of outputs that are written one after another: what cannot be written keeps nothing else from
+// being written. The first failure stays in `written`, others are warned of.
+void also(Result<void>& written, const Result<void>& next);
 
 // Each registers a sub-command; its callback stores the exit status in `status`.
 void add_inspect(CLI::App& cli, int& status);

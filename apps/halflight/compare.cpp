@@ -136,14 +136,13 @@ Result<void> run(Arguments& arguments) {
                arguments.input.reference.string());
   const Comparison result =
       compare(pictures->reference, pictures->test, pictures->shadow, arguments.options);
-  if (auto written = write_pictures(arguments.files, pictures->reference, pictures->test, result);
-      !written)
-    return written;
+  Result<void> written =
+      write_pictures(arguments.files, pictures->reference, pictures->test, result);
   const std::string text =
       arguments.json ? json_of(arguments.input, pictures->reference, arguments.options, result)
                      : text_of(arguments.options, result);
   std::fputs(text.c_str(), stdout);
-  return {};
+  return written;
 }
 
 }  // namespace

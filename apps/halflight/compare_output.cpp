@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "commands.h"
 #include "halflight/io/image_write.h"
 #include "halflight/output/false_colour.h"
 
@@ -89,16 +90,18 @@ Result<void> write_pictures(const CompareFiles& files, const Image& reference, c
                             const Comparison& result) {
   Result<void> written;
   if (!files.difference.empty())
-    written = write_image(files.difference, difference_image(files.difference, reference, test));
+    also(written,
+         write_image(files.difference, difference_image(files.difference, reference, test)));
   for (const ErrorAtSize& at : result.at_sizes) {
-    if (written && !files.mask.empty())
-      written = write_image(name_for(files.mask, result, at), mask_image(at.mask));
-    if (written && !files.false_colour.empty())
-      written = write_false_colour(name_for(files.false_colour, result, at), at.local, reference);
+    if (!files.mask.empty())
+      also(written, write_image(name_for(files.mask, result, at), mask_image(at.mask)));
+    if (!files.false_colour.empty())
+      also(written,
+           write_false_colour(name_for(files.false_colour, result, at), at.local, reference));
   }
-  if (written && !files.false_colour.empty() && result.at_sizes.empty())
-    written = write_false_colour(files.false_colour, local_error(difference(reference, test), 2),
-                                 reference);
+  if (!files.false_colour.empty() && result.at_sizes.empty())
+    also(written, write_false_colour(files.false_colour,
+                                     local_error(difference(reference, test), 2), reference));
   return written;
 }
 

@@ -9,9 +9,15 @@ namespace {
 std::atomic<Progress*> g_progress{nullptr};  // signal handlers reach nothing else
 std::atomic<bool> g_interrupted{false};
 
+// What the program was told to ignore stays ignored: SIGINT in the background of a script.
+void handle_signals_by(void (*handler)(int)) {
+  for (const int signal : {SIGINT, SIGTERM})
+    if (std::signal(signal, handler) == SIG_IGN) std::signal(signal, SIG_IGN);
+}
+
 void on_signal(int signal) {
-  std::signal(signal, SIG_DFL);
-  g_interrupted.store(true);
+  handle_signals_by(SIG_DFL);
+  if (g_interrupted.exchange(true)) std::raise(signal);  // a second one at the same time
   if (Progress* progress = g_progress.load()) progress->cancel();
 }
 
@@ -20,13 +26,11 @@ void on_signal(int signal) {
 Interruptible::Interruptible(Progress& progress) {
   g_interrupted.store(false);
   g_progress.store(&progress);
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  handle_signals_by(on_signal);
 }
 
 Interruptible::~Interruptible() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  handle_signals_by(SIG_DFL);
   g_progress.store(nullptr);
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "commands.h"
 #include "halflight/io/image_write.h"
 #include "halflight/io/write_gltf.h"
 #include "halflight/output/bake_lightmap.h"
@@ -35,11 +36,11 @@ std::filesystem::path beside(const std::filesystem::path& lit, const char* endin
 }
 
 Result<void> write_pictures(const std::filesystem::path& lit, const Lightmap& map, float exposure) {
-  if (auto written = write_image(beside(lit, "lightmap.exr"), map.irradiance); !written)
-    return written;
+  Result<void> written = write_image(beside(lit, "lightmap.exr"), map.irradiance);
   Image shown = map.irradiance;
   for (Rgb& texel : shown.pixels) texel *= exposure / kPi;
-  return write_image(beside(lit, "lightmap.png"), shown);
+  also(written, write_image(beside(lit, "lightmap.png"), shown));
+  return written;
 }
 
 Result<Lightmap> bake(int size, const SolverState& state, const SolutionReader& reader,
@@ -132,17 +133,19 @@ Result<void> write_lit(const LitArguments& arguments, const SolverState& state, 
       write_lit_glb(arguments.path, world.scene, world.geometry, mesh.primitives, exposure, file);
   report.end_phase("write lit", phase);
   report.set_lit_mesh(mesh, exposure);
-  return written ? baked : written;
+  also(baked, written);
+  return baked;
 }
 
 Result<void> write_readings(const SensorArguments& sensor_arguments,
                             std::span<const Sensor> sensors, const LitArguments& lit,
                             const SolverState& state) {
-  if (!sensors.empty())
-    if (auto written = write_irradiance(sensor_arguments, state, sensors); !written) return written;
-  if (lit.path.empty()) return {};
+  Result<void> written;
+  if (!sensors.empty()) also(written, write_irradiance(sensor_arguments, state, sensors));
+  if (lit.path.empty()) return written;
   Report report;
-  return write_lit(lit, state, report, Progress(terminal_progress()));
+  also(written, write_lit(lit, state, report, Progress(terminal_progress())));
+  return written;
 }
 
 }  // namespace halflight::app

@@ -82,6 +82,11 @@ void warn(const std::string& text) {
   std::fputs(("halflight: warning: " + text + "\n").c_str(), stderr);
 }
 
+void also(Result<void>& written, const Result<void>& next) {
+  if (!written && !next) warn(next.error().line());
+  if (written) written = next;
+}
+
 }  // namespace halflight::app
 
 int main(int argc, char** argv) {

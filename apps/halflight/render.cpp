@@ -161,12 +161,13 @@ Result<void> render(const CLI::App& command, const RenderArguments& arguments) {
                                     ? path_traced(arguments, *world, *view, progress)
                                     : solved_image(arguments, world, checkpoint, *view, progress);
   if (!picture) return tl::unexpected(picture.error());
-  if (auto written = write_picture(arguments.view, *picture); !written) return written;
-  if (arguments.visibility_output.empty()) return {};
+  Result<void> written = write_picture(arguments.view, *picture);
+  if (arguments.visibility_output.empty()) return written;
   const CameraRays camera(view->camera, view->width, view->height);
   const Image visibility = visibility_image(tracer, camera, view->width, view->height,
                                             arguments.visibility_samples, arguments.seed, progress);
-  return write_image(arguments.visibility_output, visibility);
+  also(written, write_image(arguments.visibility_output, visibility));
+  return written;
 }
 
 }  // namespace

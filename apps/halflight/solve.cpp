@@ -131,11 +131,16 @@ Result<SolverState> begin(const Outputs& outputs, const std::shared_ptr<const Wo
 // without the interruption.
 class Saver {
  public:
-  Saver(const Outputs& outputs, const SolveOrigin& origin, Report& report) : report_(report) {
+  Saver(const Outputs& outputs, const SolveOrigin& origin, Report& report)
+      : path_(outputs.checkpoint), report_(report) {
     if (!outputs.checkpoint.empty()) keeper_.emplace(outputs.checkpoint, origin);
   }
-  // A place that cannot be written to is told at once.
-  Result<void> begin(const SolverState& state) { return save(&CheckpointKeeper::save, state); }
+  // A place that cannot be written to is told at once. A solution that is there already stays until
+  // there is another.
+  Result<void> begin(const SolverState& state) {
+    if (state.history.empty() && is_checkpoint(path_)) return {};
+    return save(&CheckpointKeeper::save, state);
+  }
   void after_iteration(const SolverState& state, const Progress& progress) {
     cut_short_ = progress.cancelled();
     if (cut_short_) return;
@@ -156,6 +161,7 @@ class Saver {
     return saved;
   }
 
+  std::filesystem::path path_;
   Report& report_;
   std::optional<CheckpointKeeper> keeper_;
   bool cut_short_ = false;
@@ -215,20 +221,15 @@ Result<int> run(const CLI::App& sub, const SolveCommand& command) {
     report.end_phase("light groups", phase);
   }
   if (complete) written = saver.end(state);
-  // What cannot be written keeps nothing else from being written.
-  const auto also = [&](const Result<void>& result) {
-    if (!written && !result) warn(result.error().line());
-    if (written) written = result;
-  };
   if (state.options.memory > 0) drop_links(state);
 
   if (!sensors->empty()) {
     phase = std::chrono::steady_clock::now();
-    also(write_irradiance(command.outputs.sensors, state, *sensors));
+    also(written, write_irradiance(command.outputs.sensors, state, *sensors));
     report.end_phase("sensors", phase);
   }
   if (!command.outputs.lit.path.empty())
-    also(write_lit(command.outputs.lit, state, report, progress));
+    also(written, write_lit(command.outputs.lit, state, report, progress));
   // Cancelled, iterations and the mesh end early: what is written is valid, and coarser.
   const int status = interruptible.interrupted()                 ? kInterrupted
                      : progress.cancelled() || !outcome.goal_met ? kBudgetEnded
@@ -236,7 +237,7 @@ Result<int> run(const CLI::App& sub, const SolveCommand& command) {
   report.set_memory_limit(state.options.memory);
   if (outcome.error) report.set_estimated_error(*outcome.error);
   if (!command.outputs.report.empty())
-    also(write_text_atomically(command.outputs.report, report.json(state)));
+    also(written, write_text_atomically(command.outputs.report, report.json(state)));
   if (!written) return tl::unexpected(written.error());
   return status;
 }

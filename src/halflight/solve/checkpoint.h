@@ -42,6 +42,7 @@ class Checkpoint {
   // The same of a file that was read already; the scene is looked for as seen from `path`.
   static Result<Checkpoint> parse(Bytes bytes, const std::filesystem::path& path);
 
+  const std::filesystem::path& path() const { return path_; }
   const SolveOrigin& origin() const { return origin_; }
 
   // The scene that was solved, from another place when `instead` is not empty; an error when it is
