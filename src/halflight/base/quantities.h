@@ -8,7 +8,7 @@
 namespace halflight {
 
 // Metres: squares of lengths in between are neither 0 nor infinite in single precision.
-inline constexpr float kShortestLength = 1e-15f, kLongestLength = 1e15f;
+inline constexpr double kShortestLength = 1e-15, kLongestLength = 1e15;
 
 Result<double> parse_length(std::string_view text);    // "0.05", "5cm", "2in": metres
 Result<double> parse_duration(std::string_view text);  // "10", "10s", "2m", "500ms": seconds

@@ -46,7 +46,8 @@ Bytes read_part(const fs::path& path, std::size_t first, std::size_t most) {
 Bytes json_of(const fs::path& path) {
   constexpr std::size_t kHeader = 20;  // of the file, and of its first chunk
   const Bytes header = read_part(path, 0, kHeader);
-  if (!as_text(header).starts_with("glTF")) return read_part(path, 0, SIZE_MAX);
+  if (!as_text(header).starts_with("glTF"))
+    return lower_case_extension(path) == ".glb" ? Bytes() : read_part(path, 0, SIZE_MAX);
   if (header.size() < kHeader) return {};
   std::uint32_t length = 0;
   std::memcpy(&length, header.data() + 12, sizeof length);
