@@ -1,6 +1,6 @@
 // Loaded before the program: calls that fail as no test can make them fail in earnest.
-// No connection is accepted, as the system's table of files is full; with FAILING_ZSTD=N zstd's N-th
-// request for memory is refused.
+// No connection is accepted, as the system's table of files is full; with FAILING_ZSTD=N zstd's
+// N-th request for memory is refused.
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
