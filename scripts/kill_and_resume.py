@@ -47,13 +47,13 @@ def main():
         return trial.report()
 
 
-# What makes a file a whole one, told without the program that wrote it where that is possible.
-
 def heed_signals():
     """In the child: this script may run where they are ignored, which is inherited."""
     for heeded in [signal.SIGINT, signal.SIGTERM]:
         signal.signal(heeded, signal.SIG_DFL)
 
+
+# What makes a file a whole one, told without the program that wrote it where that is possible.
 
 def is_glb(data):
     if data[:4] != b"glTF" or struct.unpack_from("<I", data, 8)[0] != len(data):

@@ -60,7 +60,7 @@ TEST(HostileGeometry, FaintLightIsFiniteAndItsErrorANumber) {
   const SolverState faint =
       testing::solve(lit_room(1e-26f).scene, testing::options_of(LinkMaker::sampled, 0.3f));
   EXPECT_GT(mean_irradiance(faint), 0.f);
-  const EstimatedError error = ErrorProbes(faint).measure(faint);
+  const EstimatedError error = ErrorProbes(faint).measure(faint).value();
   EXPECT_TRUE(std::isfinite(error.relative_rms));
   EXPECT_LT(error.relative_rms, 0.2f);
 

@@ -177,9 +177,9 @@ TEST(EstimatedError, AgreesWithTheErrorWithinAFactorOfTwo) {
   SolverState state =
       testing::solve(doorway_scene(), testing::options_of(LinkMaker::sampled, 0.1f));
   const ErrorProbes probes(state);
-  EXPECT_LT(probes.measure(state).relative_rms, 0.05f);
+  EXPECT_LT(probes.measure(state)->relative_rms, 0.05f);
   for (Rgb& e : state.irradiance.raw()) e *= 2.f;
-  const float error = error_by_paths(state), estimated = probes.measure(state).relative_rms;
+  const float error = error_by_paths(state), estimated = probes.measure(state)->relative_rms;
   EXPECT_GT(error, 0.1f);
   EXPECT_GT(estimated, error / 2);
   EXPECT_LT(estimated, error * 2);

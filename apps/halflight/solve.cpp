@@ -131,14 +131,13 @@ Result<SolverState> begin(const Outputs& outputs, const std::shared_ptr<const Wo
 // without the interruption.
 class Saver {
  public:
-  Saver(const Outputs& outputs, const SolveOrigin& origin, Report& report)
-      : path_(outputs.checkpoint), report_(report) {
+  Saver(const Outputs& outputs, const SolveOrigin& origin, Report& report) : report_(report) {
     if (!outputs.checkpoint.empty()) keeper_.emplace(outputs.checkpoint, origin);
   }
   // A place that cannot be written to is told at once. A solution that is there already stays until
   // there is another.
   Result<void> begin(const SolverState& state) {
-    if (state.history.empty() && is_checkpoint(path_)) return {};
+    if (keeper_ && state.history.empty() && is_checkpoint(keeper_->path())) return {};
     return save(&CheckpointKeeper::save, state);
   }
   void after_iteration(const SolverState& state, const Progress& progress) {
@@ -161,7 +160,6 @@ class Saver {
     return saved;
   }
 
-  std::filesystem::path path_;
   Report& report_;
   std::optional<CheckpointKeeper> keeper_;
   bool cut_short_ = false;

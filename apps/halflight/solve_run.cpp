@@ -101,11 +101,7 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
   // No time is left to measure in.
   if (progress.cancelled() || (deadline.set() && !outcome.goal_met)) return outcome;
   const ErrorProbes probes(state, progress);
-  const auto measure = [&] {
-    const EstimatedError error = probes.measure(state, progress);
-    if (!progress.cancelled()) outcome.error = error;
-  };
-  measure();
+  outcome.error = probes.measure(state, progress);
   if (!outcome.error) return outcome;
   if (state.grouped.separated()) {
     outcome.goal_met = meets(goals, state, *outcome.error);
@@ -123,8 +119,9 @@ SolveOutcome run_to_goal(SolverState& state, const SolveGoals& goals, const Dead
     const float before = outcome.error->relative_rms;
     aim_finer(state, std::clamp(before / *goals.error, kSmallestStep, kLargestStep));
     outcome.goal_met = run();
-    measure();
-    if (progress.cancelled()) break;
+    const auto error = probes.measure(state, progress);
+    if (!error) break;
+    outcome.error = error;
     if (outcome.error->relative_rms > std::max(*goals.error, kLeastGain * before))
       outcome.goal_met = false;
   }
@@ -135,8 +132,8 @@ void separate_groups(SolverState& state, const SolveGoals& goals, const Progress
                      SolveOutcome& outcome) {
   separate(state, progress);
   if (!outcome.error || progress.cancelled()) return;
-  const EstimatedError error = ErrorProbes(state, progress).measure(state, progress);
-  if (progress.cancelled()) return;
+  const auto error = ErrorProbes(state, progress).measure(state, progress);
+  if (!error) return;
   outcome.error = error;
   outcome.goal_met = meets(goals, state, *outcome.error);
 }

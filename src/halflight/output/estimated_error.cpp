@@ -102,12 +102,15 @@ float ErrorProbes::mean_irradiance() const {
   return static_cast<float>(sum / static_cast<double>(std::max<std::size_t>(1, truths_.size())));
 }
 
-EstimatedError ErrorProbes::measure(const SolverState& state, const Progress& progress) const {
+std::optional<EstimatedError> ErrorProbes::measure(const SolverState& state,
+                                                   const Progress& progress) const {
+  if (progress.cancelled()) return std::nullopt;
   EstimatedError error;
   error.mean = mean_irradiance();
   if (points_.empty() || !(error.mean > 0.f)) return error;
   const std::vector<Reading> readings =
       SolutionReader(state, sensor_reading(state))(points_, progress);
+  if (progress.cancelled()) return std::nullopt;
   double squares = 0.0, squared_squares = 0.0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Truth& t = truths_[i];

@@ -2,6 +2,7 @@
 // paths traced there that know nothing of it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "halflight/base/progress.h"
@@ -27,11 +28,11 @@ struct EstimatedError {
 // it needs few paths, as the noise of the paths does not add to it.
 class ErrorProbes {
  public:
-  // Cancelled, both end early, and what is measured is of no use.
   explicit ErrorProbes(const SolverState& state, const Progress& progress = Progress());
 
-  // Refers to the same scene as that of the constructor.
-  EstimatedError measure(const SolverState& state, const Progress& progress = Progress()) const;
+  // Refers to the same scene as that of the constructor. Nothing where either was cancelled.
+  std::optional<EstimatedError> measure(const SolverState& state,
+                                        const Progress& progress = Progress()) const;
 
  private:
   struct Truth {

@@ -57,8 +57,7 @@ WeldedPoints weld(const Geometry& g) {
   WeldedPoints welded;
   welded.of_vertex.resize(g.positions.size());
   if (g.triangles.empty()) return welded;
-  const Vec3 reach = glm::max(glm::abs(g.bounds.lower), glm::abs(g.bounds.upper));
-  PointGrid grid(std::max(max_component(reach) * kUnitsInTheLastPlace, 1e-30f), welded.positions);
+  PointGrid grid(std::max(g.bounds.farthest() * kUnitsInTheLastPlace, 1e-30f), welded.positions);
   for (const auto& triangle : g.triangles)
     for (const VertexId v : triangle)
       if (!welded.of_vertex[v].valid()) welded.of_vertex[v] = grid.find_or_add(g.positions[v]);

@@ -64,7 +64,7 @@ struct Geometry {
   std::vector<PunctualLight> lights;
   std::vector<PlacedCamera> cameras;
   Bounds3f bounds;
-  // Left out: of zero area or less than 1e-15 m2, not finite, or beyond kFarthest; lights that
+  // Left out: of less than 5e-16 m2, not finite, or beyond kFarthest; lights that
   // their node leaves without a direction or puts beyond it.
   std::size_t degenerate_triangles = 0;
   std::size_t lights_without_place = 0;

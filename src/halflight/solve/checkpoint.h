@@ -66,6 +66,8 @@ class CheckpointKeeper {
   CheckpointKeeper(std::filesystem::path path, SolveOrigin origin)
       : path_(std::move(path)), origin_(std::move(origin)) {}
 
+  const std::filesystem::path& path() const { return path_; }
+
   // Nothing happens when the same state was written before.
   Result<void> save(const SolverState& state);
   // Only when a while has passed, so that writing takes but a small share of the time.

@@ -5,6 +5,15 @@
 #include "halflight/scene/punctual_light.h"
 
 namespace halflight {
+
+float punctual_visibility(const Visibility& visibility, const PunctualLight& light,
+                          const Vec3& from, const Vec3& towards, float feature_size) {
+  if (light.kind == Light::Kind::directional)
+    return visibility.transmittance_to_sky(from, towards, feature_size, 0.f);
+  const Vec3 to = visibility.world().rays.lift_towards(light.position, from);
+  return visibility.transmittance({from, to, feature_size, 0.f});
+}
+
 Rgb punctual_irradiance(const Visibility& visibility, const Vec3& x, const Vec3& n,
                         float feature_size) {
   const World& world = visibility.world();
@@ -16,11 +25,7 @@ Rgb punctual_irradiance(const Visibility& visibility, const Vec3& x, const Vec3&
     const Vec3 towards = direction_to(light, x);
     const float cosine = glm::dot(n, towards);
     if (cosine <= 0.f) continue;
-    const float visible =
-        light.kind == Light::Kind::directional
-            ? visibility.transmittance_to_sky(from, towards, feature_size, 0.f)
-            : visibility.transmittance(
-                  {from, world.rays.lift_towards(light.position, from), feature_size, 0.f});
+    const float visible = punctual_visibility(visibility, light, from, towards, feature_size);
     sum += visible * cosine * e;
   }
   return sum;

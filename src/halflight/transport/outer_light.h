@@ -12,6 +12,11 @@ inline bool has_outer_light(const World& world) {
   return !world.geometry.lights.empty() || max_component(world.scene.sky) > 0.f;
 }
 
+// The share of a punctual light that arrives at `from`, a point lifted off its surface; `towards`
+// is the direction to the light, of directional ones.
+float punctual_visibility(const Visibility& visibility, const PunctualLight& light,
+                          const Vec3& from, const Vec3& towards, float feature_size);
+
 // Irradiance at a point with unit normal n from point, spot and directional lights, shadows
 // of at least the feature size by one ray each (KHR_lights_punctual: candela / r^2, lux; range and
 // cones as recommended there).

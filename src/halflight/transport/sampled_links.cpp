@@ -6,6 +6,7 @@
 #include "halflight/base/parallel.h"
 #include "halflight/rays/sampling.h"
 #include "halflight/scene/punctual_light.h"
+#include "halflight/transport/outer_light.h"
 
 namespace halflight {
 namespace {
@@ -222,10 +223,7 @@ DirectLight sample_direct_light(const ElementTree& tree, const Visibility& visib
     const Vec3 w = direction_to(lamp, c.center());
     const auto x = facing_point(w, hash(cluster.value, 43));
     if (!x) continue;
-    const float visible =
-        lamp.kind == Light::Kind::directional
-            ? visibility.transmittance_to_sky(*x, w, s, 0.f)
-            : visibility.transmittance({*x, world.rays.lift_towards(lamp.position, *x), s, 0.f});
+    const float visible = punctual_visibility(visibility, lamp, *x, w, s);
     add(light.from_outside, w, visible * facing_irradiance(lamp, *x));
   }
   if (max_component(world.scene.sky) > 0.f)

@@ -75,6 +75,11 @@ void make_live_state(LiveScene& live, const std::shared_ptr<const Surfaces>& sur
   if (live.dimmed()) shine(*live.state, live.factors);
 }
 
+Mat4 transform_above(const Scene& scene, const IdVector<NodeId, Mat4>& global, NodeId node) {
+  const NodeId parent = scene.nodes[node].parent;
+  return parent.valid() ? scene.to_world * global[parent] : scene.to_world;
+}
+
 PlacedCamera choose_first_view(const World& world) {
   const auto& cameras = world.geometry.cameras;
   const auto first = std::ranges::find_if(cameras, can_look);
@@ -91,10 +96,7 @@ bool LiveScene::dimmed() const {
 
 bool can_move(const Scene& scene, NodeId node) {
   constexpr double kMostOff = 1e-6;
-  Mat4 above(1.0);
-  for (NodeId n = scene.nodes[node].parent; n.valid(); n = scene.nodes[n].parent)
-    above = scene.nodes[n].local * above;
-  above = scene.to_world * above;
+  const Mat4 above = transform_above(scene, global_transforms(scene), node);
   const Mat4 off = glm::inverse(above) * above - Mat4(1.0);
   for (int column = 0; column < 4; ++column)
     if (!glm::all(glm::lessThan(glm::abs(off[column]), glm::dvec4(kMostOff)))) return false;
@@ -105,7 +107,7 @@ Scene edited(Scene scene, const std::map<NodeId, SceneEdit>& edits) {
   const auto global = global_transforms(scene);
   for (const auto& [id, edit] : edits) {
     Node& node = scene.nodes[id];
-    const Mat4 above = node.parent.valid() ? scene.to_world * global[node.parent] : scene.to_world;
+    const Mat4 above = transform_above(scene, global, id);
     Mat4 move(1.0);
     move[3] = glm::dvec4(glm::dvec3(edit.offset), 1.0);
     if (edit.offset != Vec3(0.f)) node.local = glm::inverse(above) * move * above * node.local;

@@ -51,6 +51,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+tl::unexpected<Error> has_ended() { return system_error("the live view has ended", "live view"); }
+
 }  // namespace
 
 const char* ViewSession::name_of(Phase phase) {
@@ -146,7 +148,7 @@ Result<void> ViewSession::post(Task task, bool hurry) {
   {
     const std::lock_guard lock(mutex_);
     if (failure_) return tl::unexpected(*failure_);
-    if (stop_) return system_error("the live view has ended", "live view");
+    if (stop_) return has_ended();
     if (inbox_.size() >= kMostWaiting)
       return system_error("too many requests are waiting", "live view", "wait a moment");
     inbox_.push_back(std::move(task));
@@ -157,11 +159,11 @@ Result<void> ViewSession::post(Task task, bool hurry) {
 }
 
 Result<void> ViewSession::check(const ViewCommand& command) const {
-  const std::lock_guard lock(mutex_);
-  if (!world_) return input_error("the scene is not there yet", "live view", "wait a moment");
-  if (command.node.valid() && !world_->scene.nodes.contains(command.node))
+  const auto there = world();
+  if (!there) return input_error("the scene is not there yet", "live view", "wait a moment");
+  if (command.node.valid() && !there->scene.nodes.contains(command.node))
     return input_error("there is no such node", "live view", "reload the page");
-  if (command.offset && !can_move(world_->scene, command.node))
+  if (command.offset && !can_move(there->scene, command.node))
     return input_error("this object cannot be moved: what it belongs to has no size along an axis",
                        "live view", "move an object above it");
   return {};
@@ -210,7 +212,7 @@ Result<std::string> ViewSession::ask(Question question, double seconds) {
     return future.get();
   } catch (const std::future_error&) {
     if (const auto failed = failure()) return tl::unexpected(*failed);
-    return system_error("the live view has ended", "live view");
+    return has_ended();
   }
 }
 
@@ -225,7 +227,7 @@ Result<std::string> ViewSession::ask_copy(const LongQuestion& question, double s
   };
   if (auto taken = ask(take, seconds); !taken) return taken;
   auto answer = question(**copy, copying_progress_);
-  if (copying_progress_.cancelled()) return system_error("the live view has ended", "live view");
+  if (copying_progress_.cancelled()) return has_ended();
   return answer;
 }
 
@@ -672,10 +674,7 @@ void ViewSession::sharpen() {
         },
         options, progress);
     if (!progress.cancelled()) result.mesh = std::move(mesh);
-    if (!progress.cancelled()) {
-      const EstimatedError error = ErrorProbes(state, progress).measure(state, progress);
-      if (!progress.cancelled()) result.error = error;
-    }
+    result.error = ErrorProbes(state, progress).measure(state, progress);
     {
       const std::lock_guard lock(mutex_);
       sharpened_ready_ = true;

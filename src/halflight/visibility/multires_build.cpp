@@ -35,9 +35,7 @@ class MultiresBuilder {
                   const ClusterTree& clusters)
       : scene_(scene), geometry_(geometry), surfaces_(surfaces), clusters_(clusters) {
     areas_ = blocking_areas(scene, geometry, surfaces.bodies);
-    if (!geometry.triangles.empty())
-      inflation_ = kInflation * max_component(glm::max(glm::abs(geometry.bounds.lower),
-                                                       glm::abs(geometry.bounds.upper)));
+    if (!geometry.triangles.empty()) inflation_ = kInflation * geometry.bounds.farthest();
     take_clusters();
   }
 
