@@ -100,9 +100,11 @@ TEST(ImageReader, AChunkThatClaimsToBeHugeIsRefusedUnread) {
   Bytes bytes = encode_png(1, 1, {{1, 2, 3, 4}});
   const Bytes chunk{0x45, 0x4e, 0x44, 0x04, 'z', 'T', 'X', 't'};
   bytes.insert(bytes.begin() + 33, chunk.begin(), chunk.end());  // behind the header
-  const Result<Image8> image = decode_image(bytes, "bomb.png");
-  ASSERT_FALSE(image);
-  EXPECT_THAT(image.error().line(), testing::HasSubstr("ends inside a chunk"));
+  for (const std::size_t length : {bytes.size(), std::size_t{44}, std::size_t{41}}) {
+    const Result<Image8> image = decode_image(std::span(bytes).first(length), "bomb.png");
+    ASSERT_FALSE(image);
+    EXPECT_THAT(image.error().line(), testing::HasSubstr("ends inside a chunk"));
+  }
 }
 
 TEST(ImageReader, CutOffPicturesAreRefusedOrPartlyRead) {

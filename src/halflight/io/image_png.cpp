@@ -5,19 +5,19 @@ namespace halflight {
 namespace {
 
 Result<void> check_chunks(std::span<const std::uint8_t> bytes, const std::string& where) {
-  constexpr std::size_t kSignature = 8, kFrame = 12;  // length, kind and checksum of a chunk
-  constexpr std::uint32_t kEnd = 0x49454e44;          // "IEND"
+  constexpr std::size_t kSignature = 8, kHead = 8, kChecksum = 4;  // a head is length and kind
+  constexpr std::uint32_t kEnd = 0x49454e44;                       // "IEND"
   const auto word = [&](std::size_t at) {
     return std::uint32_t{bytes[at]} << 24 | std::uint32_t{bytes[at + 1]} << 16 |
            std::uint32_t{bytes[at + 2]} << 8 | std::uint32_t{bytes[at + 3]};
   };
-  for (std::size_t at = kSignature; at + kFrame <= bytes.size();) {
+  for (std::size_t at = kSignature; at + kHead <= bytes.size();) {
     const std::size_t length = word(at);
-    if (length > bytes.size() - at - kFrame)
+    if (length > bytes.size() - at - kHead)
       return input_error("the PNG picture cannot be decoded: it ends inside a chunk", where,
                          "save it again");
     if (word(at + 4) == kEnd) break;
-    at += kFrame + length;
+    at += kHead + length + kChecksum;
   }
   return {};
 }
