@@ -303,7 +303,7 @@ TEST_F(LongSolve, InterruptedWritesAValidResult) {
 
 // The second one is of the other kind, as after Ctrl-C a stop from elsewhere.
 TEST_F(LongSolve, InterruptedTwiceEndsAtOnce) {
-  if (test::kSanitized) GTEST_SKIP() << "the thread sanitizer holds signals back";
+  if (test::kThreadSanitized) GTEST_SKIP() << "the thread sanitizer holds signals back";
   EXPECT_EQ(run_and_signal(kLong, {SIGINT, SIGTERM}, std::chrono::milliseconds(1500)), -1);
   EXPECT_EQ(run_and_signal(kLong, {SIGTERM, SIGINT}, std::chrono::milliseconds(1500)), -1);
   EXPECT_FALSE(fs::exists(path("report.json")));
